@@ -1,0 +1,2 @@
+//! The riss program.
+fn main() {}

@@ -1,0 +1,207 @@
+//! What an analysis reports.
+
+use crate::crack::End;
+use crate::math::{Matrix2, Vector2};
+
+/// Stages of an analysis, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Node generation.
+    Nodes,
+    /// Supports, neighbor lists and integration points.
+    Discretization,
+    /// Stiffness matrix and load vector.
+    Assembly,
+    /// Linear solve.
+    Solve,
+    /// Stress intensity factors and J.
+    Fracture,
+    /// Fields for output.
+    Fields,
+}
+
+impl Stage {
+    /// Name in results and on the terminal.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nodes => "nodes",
+            Self::Discretization => "discretization",
+            Self::Assembly => "assembly",
+            Self::Solve => "solve",
+            Self::Fracture => "fracture",
+            Self::Fields => "fields",
+        }
+    }
+}
+
+/// Hears how an analysis goes on; the only way out of it.
+pub trait Observer {
+    /// A stage begins; the one before has ended.
+    fn stage(&mut self, _stage: Stage) {}
+    /// Something the user should know.
+    fn warning(&mut self, _warning: &Warning) {}
+    /// A step is complete.
+    fn step(&mut self, _step: &StepRecord) {}
+}
+
+/// Hears nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {}
+
+/// A result that stands, but deserves a second look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// What happened, with numbers, and what to do.
+    pub message: String,
+}
+
+/// One step; a static analysis has one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepRecord {
+    /// Number of the step, from 0.
+    pub step: usize,
+    /// Factor on the loads.
+    pub load_factor: f64,
+    /// Load cycles so far, in fatigue.
+    pub cycles: Option<f64>,
+    /// Every crack, in the order of the case.
+    pub cracks: Vec<CrackRecord>,
+    /// Force of each supported part on the body, by name, over the thickness.
+    pub reactions: Vec<(String, Vector2)>,
+}
+
+/// A crack in one step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrackRecord {
+    /// Name of the crack.
+    pub name: String,
+    /// Its path.
+    pub path: Vec<Vector2>,
+    /// Its tips.
+    pub tips: Vec<TipRecord>,
+}
+
+/// A tip in one step. What is not known is `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TipRecord {
+    /// Which end of the path.
+    pub end: End,
+    /// Position of the tip.
+    pub position: Vector2,
+    /// Direction ahead from the x axis [rad].
+    pub angle: f64,
+    /// Mode I stress intensity factor [stress·√length].
+    pub k1: Option<f64>,
+    /// Mode II stress intensity factor [stress·√length].
+    pub k2: Option<f64>,
+    /// Spread of both over the integration domains [stress·√length].
+    pub k_uncertainty: Option<f64>,
+    /// J-integral [stress·length].
+    pub j: Option<f64>,
+    /// T-stress [stress].
+    pub t_stress: Option<f64>,
+    /// Configurational force in the tip frame [stress·length].
+    pub configurational_force: Option<Vector2>,
+    /// Angle of the next increment against the direction ahead, counterclockwise [rad].
+    pub kink_angle: Option<f64>,
+    /// What the tip does.
+    pub status: TipStatus,
+    /// Radii of the integration domains that were used [length].
+    pub radii: Vec<f64>,
+}
+
+/// What a tip does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TipStatus {
+    /// Evaluated, not grown.
+    Stationary,
+    /// Under compression: `K_I <= 0`, where the faces would touch.
+    Closed,
+    /// No integration domain fits: fracture quantities are absent.
+    NotEvaluated,
+}
+
+impl TipStatus {
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stationary => "stationary",
+            Self::Closed => "closed",
+            Self::NotEvaluated => "not-evaluated",
+        }
+    }
+}
+
+/// Everything a static analysis finds.
+#[derive(Clone, Debug)]
+pub struct StaticResult {
+    /// Cracks, tips and reactions.
+    pub step: StepRecord,
+    /// Number of nodes.
+    pub n_nodes: usize,
+    /// Number of unknowns, multipliers included.
+    pub n_unknowns: usize,
+    /// Number of integration points.
+    pub n_integration_points: usize,
+    /// Strain energy over the thickness [stress·length³].
+    pub strain_energy: f64,
+    /// Energy norm of the error over that of the solution, where an exact field is known.
+    pub energy_error: Option<f64>,
+    /// Relative residual of the linear system.
+    pub residual: f64,
+    /// Fields over the body.
+    pub fields: Fields,
+    /// Positions of the nodes.
+    pub nodes: Vec<NodeRecord>,
+    /// Integration points: position and integration weight.
+    pub integration_points: Vec<(Vector2, f64)>,
+    /// All warnings, in order.
+    pub warnings: Vec<Warning>,
+}
+
+/// A node as output shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeRecord {
+    /// Position.
+    pub position: Vector2,
+    /// Support radius [length].
+    pub support_radius: f64,
+    /// Nodal parameters of the displacement [length].
+    pub parameters: Vector2,
+}
+
+/// Fields sampled at the vertices of triangles that cover the body; vertices on crack faces come once for each face.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fields {
+    /// Vertex positions.
+    pub positions: Vec<Vector2>,
+    /// Triangles by vertex, counterclockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// Displacement [length].
+    pub displacement: Vec<Vector2>,
+    /// In-plane stress [stress].
+    pub stress: Vec<Matrix2>,
+    /// In-plane strain.
+    pub strain: Vec<Matrix2>,
+    /// Normal stress out of the plane [stress].
+    pub out_of_plane_stress: Vec<f64>,
+    /// Von Mises stress [stress].
+    pub von_mises: Vec<f64>,
+    /// Error indicator: difference between stress and smoothed stress in the energy norm, per point [√(stress)].
+    pub error_indicator: Vec<f64>,
+    /// Displacement of both faces along each crack, for the crack lines.
+    pub crack_faces: Vec<CrackFaces>,
+}
+
+/// Both faces of a crack, vertex by vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CrackFaces {
+    /// Points along the path, from start to end.
+    pub positions: Vec<Vector2>,
+    /// Displacement of the face to the left of the path [length].
+    pub left: Vec<Vector2>,
+    /// Displacement of the face to the right of the path [length].
+    pub right: Vec<Vector2>,
+}

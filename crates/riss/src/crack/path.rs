@@ -1,0 +1,84 @@
+//! A crack in the plane: a polyline from its start to its end.
+
+use super::tip::TipFrame;
+use crate::math::Vector2;
+
+/// One of the two ends of a crack path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum End {
+    /// The first vertex.
+    Start,
+    /// The last vertex.
+    End,
+}
+
+/// A polyline whose ends are tips, unless they lie on the boundary of the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrackPath {
+    /// Name in the case file and the results.
+    pub name: String,
+    /// Vertices in order, at least two, no two neighbors equal. An end on the boundary is exactly on it.
+    pub vertices: Vec<Vector2>,
+    /// Whether the first vertex is a tip (otherwise a mouth on the boundary).
+    pub start_is_tip: bool,
+    /// Whether the last vertex is a tip (otherwise a mouth on the boundary).
+    pub end_is_tip: bool,
+}
+
+impl CrackPath {
+    /// The segments in order.
+    pub fn segments(&self) -> impl Iterator<Item = (Vector2, Vector2)> + '_ {
+        self.vertices.windows(2).map(|w| (w[0], w[1]))
+    }
+
+    /// Length of the path.
+    pub fn length(&self) -> f64 {
+        self.segments().map(|(a, b)| (b - a).norm()).sum()
+    }
+
+    /// The crack length `a` of handbooks: half of the path if both ends are tips, all of it otherwise.
+    pub fn handbook_length(&self) -> f64 {
+        if self.start_is_tip && self.end_is_tip { 0.5 * self.length() } else { self.length() }
+    }
+
+    /// Ends that are tips.
+    pub fn tip_ends(&self) -> impl Iterator<Item = End> {
+        [(self.start_is_tip, End::Start), (self.end_is_tip, End::End)].into_iter().filter(|t| t.0).map(|t| t.1)
+    }
+
+    /// Frame of an end, growth direction outward along the last segment there.
+    pub fn frame(&self, end: End) -> TipFrame {
+        let backwards = self.from_end(end);
+        let d = backwards[0] - backwards[1];
+        TipFrame { position: backwards[0], angle: d.y.atan2(d.x) }
+    }
+
+    /// The vertices in order from an end into the crack.
+    pub fn from_end(&self, end: End) -> Vec<Vector2> {
+        match end {
+            End::Start => self.vertices.clone(),
+            End::End => self.vertices.iter().rev().copied().collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_point_out_of_the_crack() {
+        let crack = CrackPath {
+            name: "c".into(),
+            vertices: vec![Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(1.0, 2.0)],
+            start_is_tip: true,
+            end_is_tip: true,
+        };
+        assert!((crack.frame(End::Start).x1() - Vector2::new(-1.0, 0.0)).norm() < 1e-15);
+        assert!((crack.frame(End::End).x1() - Vector2::new(0.0, 1.0)).norm() < 1e-15);
+        assert_eq!(crack.handbook_length(), 1.5);
+        let frame = crack.frame(End::End);
+        let p = Vector2::new(0.3, -0.8);
+        assert!((frame.global(frame.local(p)) - p).norm() < 1e-15);
+    }
+}

@@ -1,0 +1,65 @@
+//! What can go wrong once a case is valid.
+
+use crate::math::Vector2;
+
+/// Result of a library call.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// An analysis that could not be carried out; each variant holds what a user needs to mend it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The moving least squares fit has too few or badly placed neighbors.
+    #[error(
+        "the moment matrix is singular at ({}, {}): {n_neighbors} visible neighbors, {needed} or more in general position are needed; add nodes there or enlarge the dilation",
+        point.x, point.y
+    )]
+    SingularMomentMatrix {
+        /// Where the fit failed.
+        point: Vector2,
+        /// Visible nodes whose support covers the point.
+        n_neighbors: usize,
+        /// Least number of neighbors for the basis.
+        needed: usize,
+    },
+    /// A part of the body can move without deforming.
+    #[error("the body is not held: {motion} is free{}", component_text(*.component))]
+    FreeRigidMotion {
+        /// The free motion in words.
+        motion: String,
+        /// A point of the piece that is free, if the body falls into several.
+        component: Option<Vector2>,
+    },
+    /// The factorization met a pivot that is not positive.
+    #[error("the stiffness matrix cannot be factored: {reason}")]
+    Factorization {
+        /// What the solver says.
+        reason: String,
+    },
+    /// The solution does not satisfy the equations.
+    #[error("the linear solver reached a relative residual of {residual:.1e}, {allowed:.1e} is allowed")]
+    Residual {
+        /// Relative residual reached.
+        residual: f64,
+        /// Relative residual that is allowed.
+        allowed: f64,
+    },
+    /// The nodes or cells could not be made.
+    #[error("node generation failed: {reason}")]
+    NodeGeneration {
+        /// What is wrong with the geometry or the request.
+        reason: String,
+    },
+    /// No integration domain fits around a tip.
+    #[error("no integration domain fits around the crack tip at ({}, {}): {reason}", tip.x, tip.y)]
+    NoTipDomain {
+        /// The crack tip.
+        tip: Vector2,
+        /// Why.
+        reason: String,
+    },
+}
+
+fn component_text(component: Option<Vector2>) -> String {
+    component.map_or(String::new(), |p| format!(", for the piece of the body around ({:.6}, {:.6})", p.x, p.y))
+}

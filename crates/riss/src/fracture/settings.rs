@@ -1,0 +1,25 @@
+//! Choices for the extraction of fracture quantities.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Integration domains around crack tips.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct FractureSettings {
+    /// Shape of the domains.
+    pub domain: TipDomainShape,
+    /// Radii (half edges for squares) of the domains, at least three, ascending [length]; automatic if not given.
+    pub radii: Option<Vec<f64>>,
+}
+
+/// Shape of the domain of interaction and J-integrals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TipDomainShape {
+    /// A disk around the tip.
+    #[default]
+    Disc,
+    /// A square around the tip, two sides along the crack.
+    Square,
+}

@@ -1,0 +1,9 @@
+//! Points, curves, boxes and searches.
+//!
+//! Reading order: [`predicates`], [`aabb`], [`tree`], [`curve`], [`polygon`]. Has never heard of cracks, nodes or loads.
+
+pub mod aabb;
+pub mod curve;
+pub mod polygon;
+pub mod predicates;
+pub mod tree;

@@ -1,0 +1,5 @@
+//! Integration points.
+
+pub mod settings;
+
+pub use settings::{GradientCorrection, IntegrationSettings, Scheme};

@@ -1,0 +1,50 @@
+//! Choices of numerical integration.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Integration of the weak form [EFG, section 3.2].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct IntegrationSettings {
+    /// The cells.
+    pub scheme: Scheme,
+    /// Gauss points in each direction of a quadrilateral; triangles take a rule of like density.
+    #[schemars(range(min = 1, max = 30))]
+    pub points: usize,
+    /// The same in cells at a crack tip.
+    #[schemars(range(min = 1, max = 30))]
+    pub tip_points: usize,
+    /// Whether gradients are corrected so that each cell satisfies the divergence theorem.
+    pub gradient_correction: GradientCorrection,
+}
+
+impl Default for IntegrationSettings {
+    fn default() -> Self {
+        Self { scheme: Scheme::Elements, points: 4, tip_points: 9, gradient_correction: GradientCorrection::Cell }
+    }
+}
+
+/// The cells that carry the integration points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Scheme {
+    /// Triangles and rectangles between the nodes, fitted to boundary and cracks (element quadrature).
+    Elements,
+    /// A background grid clipped by the boundary (cell quadrature).
+    Cells {
+        /// Edge length of a cell [length].
+        #[schemars(range(min = 0.0))]
+        size: f64,
+    },
+}
+
+/// Correction of shape function gradients at integration points [Duan2012].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum GradientCorrection {
+    /// Plain Gauss integration, as in the papers.
+    None,
+    /// A constant for each cell and node, so that linear patch tests hold to round-off.
+    Cell,
+}

@@ -1,0 +1,5 @@
+//! Constitutive laws. Knows no geometry, nodes or cracks.
+
+pub mod elasticity;
+
+pub use elasticity::{Elasticity, PlaneState};

@@ -1,0 +1,33 @@
+//! Fixed-size linear algebra: vector and matrix types and the small factorizations that the point kernels need.
+//!
+//! Knows nothing of geometry. `nalgebra` types appear here under the names that the rest of the library uses.
+
+pub mod cholesky;
+pub mod gauss_legendre;
+
+/// A point or vector in `D` dimensions.
+pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
+/// A `D`×`D` tensor, rows first in [`nalgebra::SMatrix::new`].
+pub type Matrix<const D: usize> = nalgebra::SMatrix<f64, D, D>;
+/// A point or vector in the plane.
+pub type Vector2 = Vector<2>;
+/// A tensor in the plane.
+pub type Matrix2 = Matrix<2>;
+
+/// Out-of-plane component of `a × b`: positive if `b` points to the left of `a`.
+#[inline]
+pub fn cross(a: Vector2, b: Vector2) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// `a` turned by +90°.
+#[inline]
+pub fn turn_left(a: Vector2) -> Vector2 {
+    Vector2::new(-a.y, a.x)
+}
+
+/// Unit vector at `angle` [rad] from the x axis.
+#[inline]
+pub fn direction(angle: f64) -> Vector2 {
+    Vector2::new(angle.cos(), angle.sin())
+}

@@ -1,0 +1,59 @@
+//! The problem to solve: domain, material, cracks, loads and supports.
+//!
+//! Has never heard of nodes. Valid by construction when it comes from `case::build`.
+
+pub mod domain;
+pub mod field;
+pub mod load;
+pub mod support;
+
+use crate::crack::{CrackPath, TipFrame, TipId};
+use crate::exact::ExactField;
+use crate::material::Elasticity;
+pub use domain::{BoundaryPart, Domain, EdgeId, PartId};
+pub use field::{FieldPoint, ScalarField};
+pub use load::{BodyForce, BoundaryLoad, PointLoad, TractionValue};
+use std::sync::Arc;
+pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
+
+/// A linear elastic body in the plane with cracks, loads and supports.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Title of the case.
+    pub title: String,
+    /// The body.
+    pub domain: Domain,
+    /// Elastic constants and plane state.
+    pub material: Elasticity,
+    /// Thickness [length]; stress intensity factors do not depend on it.
+    pub thickness: f64,
+    /// Cracks; they may touch the boundary, but not yet one another.
+    pub cracks: Vec<CrackPath>,
+    /// Tractions on boundary parts.
+    pub loads: Vec<BoundaryLoad>,
+    /// Force per volume.
+    pub body_force: Option<BodyForce>,
+    /// Forces at points.
+    pub point_loads: Vec<PointLoad>,
+    /// Prescribed displacements on boundary parts.
+    pub supports: Vec<BoundarySupport>,
+    /// Prescribed displacements at points.
+    pub point_supports: Vec<PointSupport>,
+    /// Elastic foundations of boundary parts.
+    pub springs: Vec<Spring>,
+    /// What holds the body as a whole.
+    pub rigid_motion: RigidMotion,
+    /// The solution, where it is known: the analysis then reports its energy error.
+    pub exact: Option<Arc<dyn ExactField>>,
+}
+
+impl Model {
+    /// All tips, in the order of cracks and ends.
+    pub fn tips(&self) -> Vec<(TipId, TipFrame)> {
+        let mut tips = vec![];
+        for (crack, path) in self.cracks.iter().enumerate() {
+            tips.extend(path.tip_ends().map(|end| (TipId { crack, end }, path.frame(end))));
+        }
+        tips
+    }
+}

@@ -1,0 +1,5 @@
+//! Nodes: where they stand and how far they reach.
+
+pub mod settings;
+
+pub use settings::NodeSettings;

@@ -1,0 +1,5 @@
+//! The linear system.
+
+pub mod settings;
+
+pub use settings::{ConstraintMethod, LinearSolver};
