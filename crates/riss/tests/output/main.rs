@@ -1,0 +1,4 @@
+//! Files of a run, read back.
+
+mod results;
+mod sample;
