@@ -1,11 +1,12 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`results`] (the contract), [`history`], [`fields`]
-//! and [`whole_file`].
+//! with `vtk` below it, [`whole_file`].
 
 pub mod fields;
 pub mod history;
 pub mod results;
+mod vtk;
 pub mod whole_file;
 
 pub use results::{Results, RunStatus, results_json, results_schema};

@@ -66,7 +66,7 @@ fn all_formats_give_the_same_domain() {
 fn midside_nodes_are_vertices_of_the_boundary() {
     let first = model(FILES[4]).into_domain().unwrap();
     check_plate(&first, first.loops[1].len());
-    assert!(first.loops[1].len() % 2 == 0);
+    assert!(first.loops[1].len().is_multiple_of(2));
     let second = model(FILES[5]).into_domain().unwrap();
     assert_eq!((second.loops, second.parts), (first.loops, first.parts));
 }

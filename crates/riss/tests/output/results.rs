@@ -81,7 +81,7 @@ fn results_are_written_last_and_name_the_other_files() {
     let options = OutputOptions { fields: true, nodes: true, integration_points: true };
     let (info, result) = (sample::info(), sample::result(2));
     let dir = dir.path().join("made/on/the/way");
-    let mut names = |options| -> Vec<String> {
+    let names = |options| -> Vec<String> {
         let paths = write_results(&dir, &info, &result, &options).unwrap();
         paths.iter().map(|p| p.file_name().unwrap().to_str().unwrap().into()).collect()
     };
@@ -91,4 +91,14 @@ fn results_are_written_last_and_name_the_other_files() {
     assert_eq!(results.files, all);
     let few = names(OutputOptions { fields: false, nodes: false, integration_points: false });
     assert_eq!(few, ["history.csv", "results.json"]);
+}
+
+#[test]
+fn fields_of_wrong_length_are_an_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut result = sample::result(2);
+    result.fields.out_of_plane_strain.pop();
+    let error = write_results(dir.path(), &sample::info(), &result, &OutputOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("out_of_plane_strain"), "{error}");
+    assert!(!dir.path().join("results.json").exists());
 }
