@@ -54,6 +54,7 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
         triangles: triangulation.triangles.clone(),
         displacement: samples.iter().map(|s| s.0).collect(),
         strain: stress.iter().map(|s| material.strain(s)).collect(),
+        out_of_plane_strain: stress.iter().map(|s| material.out_of_plane_strain(s)).collect(),
         out_of_plane_stress: stress.iter().map(|s| material.out_of_plane_stress(s)).collect(),
         von_mises: stress.iter().map(|s| material.von_mises(s)).collect(),
         stress,

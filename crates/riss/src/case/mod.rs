@@ -6,6 +6,7 @@
 mod build;
 mod check;
 mod document;
+pub mod gmsh;
 mod problem;
 mod schema;
 
