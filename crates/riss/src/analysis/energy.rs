@@ -7,6 +7,7 @@ use crate::integration::cells::as_usize;
 use crate::math::Vector2;
 use crate::model::Model;
 use crate::system::constraints::Supports;
+use crate::system::galerkin::{Scratch, cell_displacement_gradient, cell_gradients};
 use crate::system::{ConstraintMethod, Discretization, Solution};
 use rayon::prelude::*;
 
@@ -19,7 +20,7 @@ pub struct Energies {
     pub relative_error: Option<f64>,
 }
 
-/// Integrates the strain energy, and the error if the exact field is known [EFG, Eq. 36].
+/// Integrates the strain energy of the discrete gradients, and the error if the exact field is known [EFG, Eq. 36].
 ///
 /// # Errors
 /// Those of the shape functions.
@@ -28,16 +29,16 @@ pub fn strain_energy(model: &Model, discrete: &Discretization, solution: &Soluti
     let cells: Vec<[f64; 3]> = (0..discrete.cells.len())
         .into_par_iter()
         .with_min_len(32)
-        .map_init(Buffer::default, |(around, shape), cell| {
+        .map_init(Scratch::default, |scratch, cell| {
             let mut sums = [0.0; 3];
-            discrete.approximation.survey(&discrete.cells.bounds(cell), around);
-            for point in &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])] {
-                let at = point.position;
-                discrete.approximation.evaluate_surveyed(at, at, Derivatives::First, around, shape)?;
-                let gradient = shape.gradient(&solution.parameters);
+            cell_gradients(discrete, cell, scratch, |_, _| ())?;
+            let nodes = discrete.cell_nodes.get(cell);
+            let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
+            for (q, point) in points.iter().enumerate() {
+                let gradient = cell_displacement_gradient(nodes, q, scratch, &solution.parameters);
                 sums[0] += 0.5 * point.weight * material.stress(&gradient).dot(&gradient);
                 if let Some(exact) = &model.exact {
-                    let exact = exact.gradient(material, at);
+                    let exact = exact.gradient(material, point.position);
                     let error = gradient - exact;
                     sums[1] += 0.5 * point.weight * material.stress(&error).dot(&error);
                     sums[2] += 0.5 * point.weight * material.stress(&exact).dot(&exact);

@@ -5,7 +5,7 @@
 //! the solution and an auxiliary field. That field is continued analytically up to the crack itself, however it bends
 //! behind the tip; what traction it then leaves on the faces stands in the face term.
 
-use super::settings::FractureSettings;
+use super::settings::{FractureSettings, JIntegral};
 use super::tip_domain::{DomainPoint, TipView};
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{ShapeFunctions, Surroundings};
@@ -27,7 +27,7 @@ pub struct TipIntegrals {
     pub k2: f64,
     /// T-stress [stress].
     pub t_stress: f64,
-    /// J-integral over the domain [stress·length].
+    /// J-integral [stress·length].
     pub j: f64,
 }
 
@@ -80,23 +80,24 @@ pub fn tip_integrals<F: GradientField>(
                 state.face_term(p.normal_local(view)).map(|v| v * p.weight * p.q.x)
             })?;
             (0..4).for_each(|i| sum[i] += faces[i]);
+            let j = match settings.j_integral {
+                JIntegral::Domain => sum[3],
+                JIntegral::Contour => contour_j(view, radius, settings, material, field)?,
+            };
             let young = material.effective_young();
             Ok(TipIntegrals {
                 radius,
                 k1: 0.5 * young * sum[0],
                 k2: 0.5 * young * sum[1],
                 t_stress: young * sum[2],
-                j: sum[3],
+                j,
             })
         })
         .collect()
 }
 
-/// J over a contour [stress·length], and its parts on the bent faces inside.
-///
-/// # Errors
-/// Those of the field.
-pub fn contour_j<F: GradientField>(
+/// J over a contour and the bent faces inside [stress·length].
+fn contour_j<F: GradientField>(
     view: &TipView,
     radius: f64,
     settings: &FractureSettings,
@@ -223,7 +224,7 @@ mod tests {
             largest_radius: 1.0,
         };
         for domain in [TipDomainShape::Disc, TipDomainShape::Square] {
-            let settings = FractureSettings { domain, radii: None };
+            let settings = FractureSettings { domain, ..FractureSettings::default() };
             let field = Exact(exact, material);
             let found = tip_integrals(&view, &[0.2, 0.9], &settings, &material, &field).unwrap();
             let j = (1.3f64 * 1.3 + 0.7 * 0.7) / material.effective_young();

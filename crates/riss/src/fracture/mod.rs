@@ -6,6 +6,6 @@ pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;
 
-pub use interaction_integral::{GradientField, SolutionField, TipIntegrals, contour_j, tip_integrals};
-pub use settings::{FractureSettings, TipDomainShape};
+pub use interaction_integral::{GradientField, SolutionField, TipIntegrals, tip_integrals};
+pub use settings::{FractureSettings, JIntegral, TipDomainShape};
 pub use tip_domain::TipView;

@@ -18,6 +18,8 @@ const THICKNESS_FRACTION: f64 = 1.0 / 7.0;
 const KINK_FRACTION: f64 = 1.0 / 12.0;
 /// Spacing at re-entrant corners and where forces act at a point, as a fraction of the body's spacing.
 const SINGULAR_FRACTION: f64 = 1.0 / 8.0;
+/// Spacing where the condition on the boundary changes, as a fraction of the body's spacing and of the shorter edge.
+const CHANGE_FRACTIONS: [f64; 2] = [1.0 / 3.0, 1.0 / 12.0];
 /// Turn of a crack or an outline below which a vertex is smooth [rad].
 const SMOOTH_TURN: f64 = 0.2;
 /// Default growth of the spacing with distance.
@@ -56,6 +58,7 @@ impl SpacingField {
         field.add_tips(model, settings.tip_spacing);
         field.add_kinks(model);
         field.add_edges(model);
+        field.add_changes(model);
         field.add_thickness(model);
         for p in model.point_loads.iter().map(|l| l.at).chain(model.point_supports.iter().map(|s| s.at)) {
             field.add(Place::Point(p), SINGULAR_FRACTION * largest);
@@ -115,6 +118,34 @@ impl SpacingField {
                 if cross(before, after).atan2(before.dot(&after)) < -SMOOTH_TURN {
                     let spacing = SINGULAR_FRACTION * self.largest.min(curve.length()).min(next.length());
                     self.add(Place::Point(curve.point(1.0)), spacing);
+                }
+            }
+        }
+    }
+
+    /// Stress is singular, or at least steep, where loads or supports begin and end.
+    fn add_changes(&mut self, model: &Model) {
+        let conditions = |edge: usize| -> Vec<(u8, usize)> {
+            let on = |part: usize| model.domain.parts[part].edges.contains(&edge);
+            let loads = model.loads.iter().map(|l| l.part.is_some_and(on));
+            let supports = model.supports.iter().map(|s| on(s.part));
+            let springs = model.springs.iter().map(|s| on(s.part));
+            let hits = |kind: u8, flags: Vec<bool>| flags.into_iter().enumerate().filter(|f| f.1).map(move |f| (kind, f.0));
+            hits(0, loads.collect()).chain(hits(1, supports.collect())).chain(hits(2, springs.collect())).collect()
+        };
+        let domain = &model.domain;
+        for range in &domain.loops {
+            for edge in range.clone() {
+                let next = if edge + 1 == range.end { range.start } else { edge + 1 };
+                let (a, b) = (domain.edges[edge], domain.edges[next]);
+                let turns = cross(a.tangent(1.0), b.tangent(0.0)).abs() > SMOOTH_TURN;
+                let (here, there) = (conditions(edge), conditions(next));
+                let supported = here.iter().chain(&there).any(|c| c.0 > 0);
+                // A free edge beside a loaded one at a corner carries no singularity.
+                if here != there && (supported || !turns) {
+                    let shorter = a.length().min(b.length());
+                    let spacing = (CHANGE_FRACTIONS[0] * self.largest).min(CHANGE_FRACTIONS[1] * shorter);
+                    self.add(Place::Point(a.point(1.0)), spacing);
                 }
             }
         }

@@ -7,8 +7,9 @@ use super::settings::ConstraintMethod;
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{ShapeFunctions, Surroundings};
 use crate::error::Result;
+use crate::integration::IntegrationPoint;
 use crate::integration::cells::as_usize;
-use crate::math::Vector2;
+use crate::math::{Matrix2, Vector2};
 use crate::model::{FieldPoint, Model};
 use rayon::prelude::*;
 
@@ -82,6 +83,43 @@ impl LinearSystem {
     }
 }
 
+/// Shape function gradients at all points of one cell, corrected, into `scratch`; `visit(point, shape functions)` sees
+/// the plain ones.
+pub fn cell_gradients(
+    discrete: &Discretization,
+    cell: usize,
+    scratch: &mut Scratch,
+    mut visit: impl FnMut(&IntegrationPoint<2>, &ShapeFunctions<2>),
+) -> Result<()> {
+    let nodes = discrete.cell_nodes.get(cell);
+    let n = nodes.len();
+    let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
+    let Scratch { around, shape, gradients, correction, .. } = scratch;
+    discrete.approximation.survey(&discrete.cells.bounds(cell), around);
+    for g in gradients.iter_mut() {
+        g.clear();
+        g.resize(n * points.len(), 0.0);
+    }
+    for (q, point) in points.iter().enumerate() {
+        let at = point.position;
+        discrete.approximation.evaluate_surveyed(at, at, Derivatives::First, around, shape)?;
+        for_each_local(nodes, &shape.neighbors, |a, k| {
+            gradients[0][q * n + a] = shape.gradients[k].x;
+            gradients[1][q * n + a] = shape.gradients[k].y;
+        });
+        visit(point, shape);
+    }
+    correct_gradients(discrete, cell, nodes, around, shape, gradients, correction)
+}
+
+/// Displacement gradient at point `q` of a cell whose gradients are in `scratch`.
+pub fn cell_displacement_gradient(nodes: &[u32], q: usize, scratch: &Scratch, parameters: &[Vector2]) -> Matrix2 {
+    let n = nodes.len();
+    let [gx, gy] = &scratch.gradients;
+    let terms = nodes.iter().zip(gx[q * n..].iter().zip(&gy[q * n..]));
+    terms.fold(Matrix2::zeros(), |sum, (&i, (&x, &y))| sum + parameters[i as usize] * Vector2::new(x, y).transpose())
+}
+
 /// Stiffness and body force of one cell.
 fn cell_matrix(
     model: &Model,
@@ -94,29 +132,16 @@ fn cell_matrix(
     let n = nodes.len();
     local.reset(nodes);
     let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
-    let Scratch { around, shape, gradients, correction, products } = scratch;
-    discrete.approximation.survey(&discrete.cells.bounds(cell), around);
-    for g in gradients.iter_mut() {
-        g.clear();
-        g.resize(n * points.len(), 0.0);
-    }
-    for (q, point) in points.iter().enumerate() {
-        let at = point.position;
-        discrete.approximation.evaluate_surveyed(at, at, Derivatives::First, around, shape)?;
-        let force = model.body_force.as_ref().map(|b| {
-            let field_point = FieldPoint { position: at, normal: Vector2::zeros() };
-            Vector2::new(b.0[0].value(&field_point), b.0[1].value(&field_point)) * point.weight
-        });
+    cell_gradients(discrete, cell, scratch, |point, shape| {
+        let Some(body) = &model.body_force else { return };
+        let at = FieldPoint { position: point.position, normal: Vector2::zeros() };
+        let force = Vector2::new(body.0[0].value(&at), body.0[1].value(&at)) * point.weight;
         for_each_local(nodes, &shape.neighbors, |a, k| {
-            gradients[0][q * n + a] = shape.gradients[k].x;
-            gradients[1][q * n + a] = shape.gradients[k].y;
-            if let Some(f) = force {
-                local.load[2 * a] += shape.values[k] * f.x;
-                local.load[2 * a + 1] += shape.values[k] * f.y;
-            }
+            local.load[2 * a] += shape.values[k] * force.x;
+            local.load[2 * a + 1] += shape.values[k] * force.y;
         });
-    }
-    correct_gradients(discrete, cell, nodes, around, shape, gradients, correction)?;
+    })?;
+    let Scratch { gradients, products, .. } = scratch;
     for (k, product) in products.iter_mut().enumerate() {
         product.clear();
         product.resize(if k == 2 { n * n } else { n * (n + 1) / 2 }, 0.0);
