@@ -32,11 +32,8 @@ impl RunRecord {
 /// Writes all files of a run into `dir`; returns their paths.
 pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> io::Result<Vec<PathBuf>> {
     let output = &case.output;
-    let options = OutputOptions {
-        fields: output.fields,
-        nodes: output.nodes,
-        integration_points: output.integration_points,
-    };
+    let options =
+        OutputOptions { fields: output.fields, nodes: output.nodes, integration_points: output.integration_points };
     write_results(dir, &run.info(case), result, &options)
 }
 

@@ -85,13 +85,7 @@ pub fn tip_integrals<F: GradientField>(
                 JIntegral::Contour => contour_j(view, radius, settings, material, field)?,
             };
             let young = material.effective_young();
-            Ok(TipIntegrals {
-                radius,
-                k1: 0.5 * young * sum[0],
-                k2: 0.5 * young * sum[1],
-                t_stress: young * sum[2],
-                j,
-            })
+            Ok(TipIntegrals { radius, k1: 0.5 * young * sum[0], k2: 0.5 * young * sum[1], t_stress: young * sum[2], j })
         })
         .collect()
 }

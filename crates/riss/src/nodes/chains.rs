@@ -1,9 +1,11 @@
 //! Points along the boundary and the cracks: the lines that triangles must respect.
 
 use super::spacing::SpacingField;
+use super::triangulation::Triangulation;
 use crate::geometry::curve::Curve;
 use crate::math::Vector2;
-use crate::model::{EdgeId, Model};
+use crate::model::{Domain, EdgeId, Model};
+use std::ops::Range;
 
 /// A stretch of a boundary edge between two neighboring points, body to its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +94,32 @@ impl Chains {
             let last = self.boundary.len() - 1;
             debug_assert!(last >= first_segment);
             self.boundary[last].points[1] = start;
+        }
+    }
+
+    /// The boundary of a triangulation along one loop, its arcs subdivided to pieces of at most `turn` [rad].
+    pub fn add_loop(&mut self, nodal: &Triangulation, edges: Range<EdgeId>, domain: &Domain, turn: f64) {
+        let start = self.positions.len() as u32;
+        for s in nodal.boundary.iter().filter(|s| edges.contains(&s.edge)) {
+            let (curve, [from, to]) = (&domain.edges[s.edge], s.range);
+            let n = match curve {
+                Curve::Line { .. } => 1,
+                Curve::Arc { sweep, .. } => (sweep.abs() * (to - from) / turn).ceil().max(1.0) as usize,
+            };
+            let h = curve.length() * (to - from) / n as f64;
+            for k in 0..n {
+                let t = |k: usize| from + (to - from) * k as f64 / n as f64;
+                let p = if k == 0 { nodal.position(s.points[0]) } else { curve.point(t(k)) };
+                let index = self.push(p, true, h);
+                self.boundary.push(BoundarySegment {
+                    points: [index, index + 1],
+                    edge: s.edge,
+                    range: [t(k), t(k + 1)],
+                });
+            }
+        }
+        if let Some(last) = self.boundary.last_mut() {
+            last.points[1] = start;
         }
     }
 

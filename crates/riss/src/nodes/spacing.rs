@@ -130,7 +130,8 @@ impl SpacingField {
             let loads = model.loads.iter().map(|l| l.part.is_some_and(on));
             let supports = model.supports.iter().map(|s| on(s.part));
             let springs = model.springs.iter().map(|s| on(s.part));
-            let hits = |kind: u8, flags: Vec<bool>| flags.into_iter().enumerate().filter(|f| f.1).map(move |f| (kind, f.0));
+            let hits =
+                |kind: u8, flags: Vec<bool>| flags.into_iter().enumerate().filter(|f| f.1).map(move |f| (kind, f.0));
             hits(0, loads.collect()).chain(hits(1, supports.collect())).chain(hits(2, springs.collect())).collect()
         };
         let domain = &model.domain;

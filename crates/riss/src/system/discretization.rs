@@ -107,7 +107,7 @@ impl Discretization {
             Scheme::Elements => {
                 IntegrationCells::elements(&triangulation, &model.domain, &tips, is_regular, integration)
             }
-            Scheme::Cells { size } => IntegrationCells::background(model, &tips, size, integration)?,
+            Scheme::Cells { size } => IntegrationCells::background(model, &triangulation, &tips, size, integration)?,
         };
         if integration.gradient_correction == GradientCorrection::None {
             cells.drop_outlines();
