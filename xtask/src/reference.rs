@@ -4,7 +4,7 @@
 //! the table; choices that carry keys of their own get a section too.
 
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write;
 
 const HEAD: &str =
@@ -32,46 +32,72 @@ pub fn page_of_schema_text(text: &str) -> Result<String, String> {
 /// The page for a schema.
 pub fn page(schema: &Value) -> String {
     let mut page = HEAD.to_string();
-    let writer = Writer { root: schema };
-    writer.section(&mut page, "Top level", schema);
-    // Sections in the order in which a reader meets them.
-    let mut seen = BTreeSet::new();
-    let mut queue = std::collections::VecDeque::from(references(schema));
-    while let Some(name) = queue.pop_front() {
-        if !seen.insert(name.clone()) {
-            continue;
-        }
-        let definition = &schema["$defs"][&name];
-        queue.extend(references(definition));
-        if writer.needs_section(definition) {
-            writer.section(&mut page, &name, definition);
+    // Sections in the order in which a reader meets them, named by the first key that leads there.
+    let mut sections: Vec<(String, String)> = vec![];
+    let mut queue = VecDeque::from([(schema, String::new())]);
+    while let Some((schema_here, path)) = queue.pop_front() {
+        for (name, path) in references(schema_here, &path) {
+            if sections.iter().all(|(known, _)| *known != name) {
+                queue.push_back((&schema["$defs"][&name], path.clone()));
+                sections.push((name, path));
+            }
         }
     }
-    page
+    let writer = Writer { root: schema, paths: sections.iter().cloned().collect() };
+    writer.section(&mut page, "Top level", schema);
+    for (name, path) in &sections {
+        let definition = &schema["$defs"][name];
+        if writer.needs_section(definition) {
+            writer.section(&mut page, path, definition);
+        }
+    }
+    page.replace("\n\n\n", "\n\n")
 }
 
-/// Names of the definitions that a schema refers to, in order of keys.
-fn references(schema: &Value) -> Vec<String> {
-    match schema {
-        Value::Object(map) => {
-            let mut keys: Vec<&String> = map.keys().filter(|k| *k != "$defs").collect();
-            keys.sort();
-            let own = map.get("$ref").and_then(Value::as_str).and_then(|r| r.strip_prefix("#/$defs/"));
-            own.map(String::from).into_iter().chain(keys.into_iter().flat_map(|k| references(&map[k]))).collect()
-        }
-        Value::Array(items) => items.iter().flat_map(references).collect(),
-        _ => vec![],
+/// Names of the definitions that a schema refers to, each with the path of keys that leads there.
+fn references(schema: &Value, path: &str) -> Vec<(String, String)> {
+    if let Some(name) = definition_name(schema) {
+        return vec![(name.into(), path.into())];
     }
+    let mut found = vec![];
+    for key in sorted_keys(schema) {
+        let below = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+        found.extend(references(&schema["properties"][key], &below));
+    }
+    for part in ["oneOf", "anyOf", "allOf", "prefixItems"] {
+        found.extend(schema[part].as_array().into_iter().flatten().flat_map(|v| references(v, path)));
+    }
+    for part in ["items", "additionalProperties"] {
+        found.extend(schema.get(part).into_iter().flat_map(|v| references(v, path)));
+    }
+    found
+}
+
+fn definition_name(schema: &Value) -> Option<&str> {
+    schema["$ref"].as_str().and_then(|r| r.strip_prefix("#/$defs/"))
+}
+
+/// The keys of an object, required ones first, otherwise by the alphabet.
+fn sorted_keys(schema: &Value) -> Vec<&String> {
+    let mut keys: Vec<&String> = schema["properties"].as_object().into_iter().flat_map(|m| m.keys()).collect();
+    keys.sort_by_key(|k| (!is_required(schema, k), k.as_str()));
+    keys
+}
+
+fn is_required(schema: &Value, key: &str) -> bool {
+    schema["required"].as_array().is_some_and(|r| r.iter().any(|v| v == key))
 }
 
 struct Writer<'a> {
     root: &'a Value,
+    /// Path of keys of each definition.
+    paths: BTreeMap<String, String>,
 }
 
 impl<'a> Writer<'a> {
     /// The schema that a reference points to, and the name of its definition.
     fn resolve(&self, schema: &'a Value) -> (&'a Value, Option<&'a str>) {
-        match schema["$ref"].as_str().and_then(|r| r.strip_prefix("#/$defs/")) {
+        match definition_name(schema) {
             Some(name) => (&self.root["$defs"][name], Some(name)),
             None => (schema, None),
         }
@@ -109,7 +135,7 @@ impl<'a> Writer<'a> {
             let inner = &variant["properties"][key];
             let (content, content_name) = self.resolve(inner);
             match content_name {
-                Some(name) => write!(page, ": see {}", link(name)).expect("a string takes all"),
+                Some(name) => write!(page, ": see {}", self.link(name)).expect("a string takes all"),
                 None if content["properties"].is_object() => {
                     page.push_str(", with the keys\n");
                     self.table(page, content);
@@ -117,7 +143,7 @@ impl<'a> Writer<'a> {
                 None => write!(page, " (`{}`)", self.kind(inner)).expect("a string takes all"),
             }
         } else if let Some(name) = name {
-            write!(page, "\n- {}", with_text(&link(name), &text)).expect("a string takes all");
+            write!(page, "\n- {}", with_text(&self.link(name), &text)).expect("a string takes all");
         } else {
             write!(page, "\n- {}", with_text(&self.kind(variant), &text)).expect("a string takes all");
             if variant["properties"].is_object() {
@@ -131,12 +157,9 @@ impl<'a> Writer<'a> {
     fn table(&self, page: &mut String, schema: &'a Value) {
         page.push_str("\n| key | type | default | allowed | description |\n| --- | --- | --- | --- | --- |\n");
         let properties = schema["properties"].as_object().expect("asked before");
-        let is_required = |key: &str| schema["required"].as_array().is_some_and(|r| r.iter().any(|v| v == key));
-        let mut keys: Vec<&String> = properties.keys().collect();
-        keys.sort_by_key(|k| (!is_required(k), k.as_str()));
-        for key in keys {
+        for key in sorted_keys(schema) {
             let property = &properties[key];
-            let default = match (is_required(key), property.get("default")) {
+            let default = match (is_required(schema, key), property.get("default")) {
                 (true, _) => "required".into(),
                 (false, None | Some(Value::Null)) => String::new(),
                 (false, Some(value)) => self.default_text(value, property),
@@ -164,7 +187,7 @@ impl<'a> Writer<'a> {
         let schema = without_null(schema);
         let (resolved, name) = self.resolve(schema);
         if let Some(name) = name.filter(|_| self.needs_section(resolved)) {
-            return link(name);
+            return self.link(name);
         }
         let list = variants(resolved);
         if !list.is_empty() {
@@ -201,6 +224,12 @@ impl<'a> Writer<'a> {
             (Some(n), Some(m)) if n == m => format!("{n} × {}", self.kind(&schema["items"])),
             _ => format!("list of {}", self.kind(&schema["items"])),
         }
+    }
+
+    /// A link to the section of a definition.
+    fn link(&self, name: &str) -> String {
+        let path = self.paths.get(name).map_or(name, String::as_str);
+        format!("[{path}](#{})", path.to_lowercase().replace('.', ""))
     }
 
     /// Words, ranges and lengths that are allowed.
@@ -309,11 +338,6 @@ fn inline(value: &Value) -> String {
     }
 }
 
-/// A link to the section of a definition.
-fn link(name: &str) -> String {
-    format!("[{name}](#{})", name.to_lowercase())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -350,12 +374,12 @@ mod tests {
         let page = page(&schema());
         for row in [
             "| `title` | text | required |  | Name of the case. |",
-            "| `approximation` | [Approximation](#approximation) |  |  | Shape functions. |",
+            "| `approximation` | [approximation](#approximation) |  |  | Shape functions. |",
             "| `basis` | word | `\"linear\"` | `linear`, `quadratic` |  |",
             "| `dilation` | number |  | ≥ 1, ≤ 10 |  |",
             "| `radii` | list of number |  | at least 3 items, each > 0 |  |",
             "| `factor` | number | `10` | ≥ 0 |  |",
-            "| `constraints` | [Constraints](#constraints) | `{ nitsche = { factor = 10 } }` | \
+            "| `constraints` | [constraints](#constraints) | `{ nitsche = { factor = 10 } }` | \
              `lagrange-multipliers`, `nitsche` |  |",
             "- `nitsche`: Nitsche's method, with the keys",
             "- `lagrange-multipliers`: Multipliers",
@@ -363,7 +387,7 @@ mod tests {
             assert!(page.contains(row), "{row} is missing in\n{page}");
         }
         let order: Vec<_> =
-            ["## Top level", "## Approximation", "## Constraints"].iter().map(|t| page.find(t)).collect();
+            ["## Top level", "## approximation", "## constraints"].iter().map(|t| page.find(t)).collect();
         assert!(order.is_sorted() && order[0].is_some());
     }
 
