@@ -1,7 +1,7 @@
 //! Development tasks: one entry, `cargo xtask`, no shell scripts.
 //!
 //! A library, so that integration tests can use the same rules: [`expected`] compares a run with its reference values,
-//! [`reference`] turns the JSON schema of the case file into a page of the book, [`tidy`] checks the manners of the code.
+//! [`mod@reference`] turns the JSON schema of the case file into a page of the book, [`tidy`] checks the manners of the code.
 
 pub mod bench;
 pub mod ci;
