@@ -251,6 +251,11 @@ pub fn run_case(riss: &Path, folder: &Path, out: &Path) -> Result<CaseRun, Strin
     let read = |path: &Path| std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()));
     let expected = folder.join("expected.json");
     let expected = Expected::parse(&read(&expected)?).map_err(|e| format!("{}: {e}", expected.display()))?;
+    let path = out.join("results.json");
+    // What an earlier run left must not pass for this one.
+    if path.exists() {
+        std::fs::remove_file(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
     let start = Instant::now();
     let mut command = Command::new(riss);
     command.arg("run").arg(folder.join("case.toml")).arg("--out").arg(out).stdin(Stdio::null());
@@ -260,7 +265,6 @@ pub fn run_case(riss: &Path, folder: &Path, out: &Path) -> Result<CaseRun, Strin
         let text = String::from_utf8_lossy(&output.stderr);
         return Err(format!("riss ended with {}\n{}", output.status, text.trim_end()));
     }
-    let path = out.join("results.json");
     let results: Value = serde_json::from_str(&read(&path)?).map_err(|e| format!("{}: {e}", path.display()))?;
     Ok(CaseRun { comparisons: expected.compare(&results), results, time })
 }
