@@ -1,2 +1,61 @@
-//! The riss program.
-fn main() {}
+//! The riss program: `run`, `check`, `schema`, `new`.
+
+mod check;
+mod diagnostics;
+mod new;
+mod progress;
+mod results;
+mod run;
+mod schema;
+mod table;
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Done.
+const DONE: u8 = 0;
+/// The analysis failed or stopped early, or its results could not be written.
+const STOPPED: u8 = 1;
+/// The case or the command line is wrong.
+const BAD_CASE: u8 = 2;
+
+/// Cracks in solids with meshfree methods: stress intensity factors, J and T-stress of a case file.
+#[derive(Parser)]
+#[command(version, after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Runs a case and writes its results
+    Run(run::RunArguments),
+    /// Reads and checks a case without running it
+    Check(check::CheckArguments),
+    /// Prints the JSON Schema of the case file
+    Schema,
+    /// Writes a commented case to start from
+    New {
+        /// File to write; an existing one is left alone
+        #[arg(default_value = "case.toml")]
+        file: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    let code = match Cli::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Schema => schema::print(),
+        Command::New { file } => new::write(&file),
+    };
+    ExitCode::from(code)
+}
+
+/// Prints to stdout; a reader that has gone away, such as `head`, is no error.
+fn print(text: &str) {
+    use std::io::Write;
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}

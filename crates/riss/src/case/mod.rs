@@ -1,1 +1,129 @@
-//! case
+//! The case file: text in, checked [`Model`] and [`Settings`] out.
+//!
+//! Reading order: [`schema`] (what may be written), [`document`] (what was written), [`check`] (names and types),
+//! [`build`] (geometry and sense). All mistakes are reported together, each at its line.
+
+mod build;
+mod check;
+mod document;
+pub mod gmsh;
+mod problem;
+mod schema;
+
+use crate::analysis::Settings;
+use crate::model::Model;
+use document::Document;
+pub use problem::{CaseErrors, Origin, Problem};
+pub use schema::OutputSettings;
+use std::path::{Path, PathBuf};
+
+/// Larger files are refused.
+const MAX_BYTES: u64 = 10_000_000;
+/// The same for meshes and node lists.
+const MAX_MESH_BYTES: u64 = 500_000_000;
+
+/// A valid case.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The problem.
+    pub model: Model,
+    /// Numerical choices.
+    pub settings: Settings,
+    /// What to write.
+    pub output: OutputSettings,
+    /// The case file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// The overrides as they were given.
+    pub overrides: Vec<String>,
+    /// What the author should know, although the case is valid.
+    pub notes: Vec<Problem>,
+}
+
+impl Case {
+    /// Reads a case file; `overrides` are `key=value` with a dotted key path, and win over the file.
+    ///
+    /// # Errors
+    /// All problems of the case, in the order of the file.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
+        match read_text(path, MAX_BYTES) {
+            Ok(text) => Self::parse(&text, path, overrides),
+            Err(problem) => Err(CaseErrors {
+                file: path.into(),
+                text: String::new(),
+                overrides: overrides.to_vec(),
+                problems: vec![problem],
+            }),
+        }
+    }
+
+    /// Like [`Case::read`] with the text at hand; files that it names are sought beside `path`.
+    ///
+    /// # Errors
+    /// All problems of the case, in the order of the file.
+    pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
+        let mut problems = vec![];
+        let document = Document::parse(text, overrides, &mut problems);
+        let built = if problems.is_empty() { build::build(&document, path, &mut problems) } else { None };
+        match built {
+            Some((model, settings, output, notes)) if problems.is_empty() => Ok(Self {
+                model,
+                settings,
+                output,
+                path: path.into(),
+                text: text.into(),
+                overrides: overrides.to_vec(),
+                notes,
+            }),
+            _ => {
+                problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
+                Err(CaseErrors { file: path.into(), text: text.into(), overrides: overrides.to_vec(), problems })
+            }
+        }
+    }
+
+    /// Where a note stands, such as `case.toml:3:9`.
+    pub fn place(&self, note: &Problem) -> String {
+        problem::place(&self.path, &self.overrides, note)
+    }
+}
+
+/// The JSON Schema of the case file.
+pub fn json_schema() -> serde_json::Value {
+    schemars::schema_for!(schema::CaseFile).to_value()
+}
+
+/// The text of a file.
+fn read_text(path: &Path, max_bytes: u64) -> Result<String, Problem> {
+    let bytes = read_bytes(path, max_bytes)?;
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        Problem::new("", format!("the file is not UTF-8 text (first bad byte: number {})", at + 1))
+    })
+}
+
+/// The bytes of a file.
+fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Problem> {
+    use std::io::Read;
+    let bad = |e: std::io::Error| {
+        let reason = match e.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file".to_string(),
+            std::io::ErrorKind::IsADirectory => "this is a folder, not a file".into(),
+            std::io::ErrorKind::PermissionDenied => "no permission to read it".into(),
+            _ => e.to_string(),
+        };
+        Problem::new("", format!("cannot read {}: {reason}", path.display()))
+    };
+    let file = std::fs::File::open(path).map_err(bad)?;
+    let mut bytes = vec![];
+    // Read through a limit instead of asking for the size, which devices and pipes do not have.
+    file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(bad)?;
+    if bytes.len() as u64 > max_bytes {
+        return Err(Problem::new("", format!("{} is larger than {} MB", path.display(), max_bytes / 1_000_000)));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests;

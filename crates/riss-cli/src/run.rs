@@ -1,0 +1,100 @@
+//! `riss run`.
+
+use crate::progress::{Progress, peak_memory_bytes};
+use crate::results::{self, RunRecord};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, table};
+use clap::Args;
+use riss::analysis::{StaticResult, linear_static};
+use riss::case::Case;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `riss run`.
+#[derive(Args)]
+pub struct RunArguments {
+    /// Case file
+    pub case: PathBuf,
+    /// Folder for the results [default: NAME.riss-out in the current folder]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Overrides a key of the case, such as material.young=70e9; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<String>,
+    /// Number of threads [default: all cores]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Prints the results as JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+    /// Shows no progress and no notes
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Runs a case; returns the exit code.
+pub fn run(arguments: &RunArguments) -> u8 {
+    let case = match Case::read(&arguments.case, &arguments.overrides) {
+        Ok(case) => case,
+        Err(errors) => {
+            diagnostics::report_errors(&errors);
+            return BAD_CASE;
+        }
+    };
+    if !arguments.quiet {
+        diagnostics::report_notes(&case);
+    }
+    if let Some(n) = arguments.threads {
+        if let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global() {
+            eprintln!("error: cannot start {n} threads: {e}");
+            return BAD_CASE;
+        }
+    }
+    let mut progress = Progress::new(arguments.quiet);
+    let outcome = linear_static(&case.model, &case.settings, &mut progress);
+    let wall_time_s = progress.finish();
+    match outcome {
+        Ok(result) => {
+            let stage_time_s = std::mem::take(&mut progress.stage_time_s);
+            let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
+            deliver(arguments, &case, &run, &result)
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            STOPPED
+        }
+    }
+}
+
+/// Writes files and prints the results.
+fn deliver(arguments: &RunArguments, case: &Case, run: &RunRecord, result: &StaticResult) -> u8 {
+    let dir = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.case));
+    let written = results::write(&dir, case, run, result);
+    if arguments.json {
+        crate::print(&results::json(case, run, result));
+    } else {
+        let size = format!("{} nodes, {} unknowns, {:.2} s", result.n_nodes, result.n_unknowns, run.wall_time_s);
+        crate::print(&format!("{}\n{size}\n\n{}", case.model.title, table::summary(result)));
+    }
+    match written {
+        Ok(files) => {
+            if !arguments.json {
+                let lines: String = files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
+                crate::print(&format!("\n{lines}"));
+            }
+            DONE
+        }
+        Err(e) => {
+            eprintln!("error: cannot write the results to {}: {e}", dir.display());
+            STOPPED
+        }
+    }
+}
+
+/// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.
+fn default_out(case: &Path) -> PathBuf {
+    let path = case.canonicalize().unwrap_or_else(|_| case.to_path_buf());
+    let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
+    let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    let name = if stem == "case" { folder.unwrap_or(stem) } else { stem };
+    PathBuf::from(format!("{name}.riss-out"))
+}

@@ -1,0 +1,99 @@
+//! Results on the terminal.
+
+use riss::analysis::{StaticResult, TipRecord};
+use std::fmt::Write;
+
+/// Tips, reactions and warnings as text.
+pub fn summary(result: &StaticResult) -> String {
+    let mut text = String::new();
+    let rows: Vec<Vec<String>> = tips(result).map(|(name, tip)| tip_row(name, tip)).collect();
+    if !rows.is_empty() {
+        let head = ["crack", "end", "x", "y", "K_I", "K_II", "K_uncertainty", "J", "T", "status"];
+        text += &aligned(&head, &rows, &[0, 1, 9]);
+    }
+    if !result.step.reactions.is_empty() {
+        let row = |(part, force): &(String, riss::math::Vector2)| vec![part.clone(), number(force.x), number(force.y)];
+        let rows: Vec<_> = result.step.reactions.iter().map(row).collect();
+        text += if text.is_empty() { "" } else { "\n" };
+        text += &aligned(&["reaction of", "x", "y"], &rows, &[0]);
+    }
+    if let Some(error) = result.energy_error {
+        writeln!(text, "\nerror in the energy norm: {:.4} %", 100.0 * error).expect("a string takes all");
+    }
+    for warning in &result.warnings {
+        writeln!(text, "\nwarning: {}", warning.message).expect("a string takes all");
+    }
+    text
+}
+
+fn tips(result: &StaticResult) -> impl Iterator<Item = (&str, &TipRecord)> {
+    result.step.cracks.iter().flat_map(|c| c.tips.iter().map(|t| (c.name.as_str(), t)))
+}
+
+fn tip_row(name: &str, tip: &TipRecord) -> Vec<String> {
+    let known = |v: Option<f64>| v.map_or("-".to_string(), number);
+    let end = match tip.end {
+        riss::crack::End::Start => "start",
+        riss::crack::End::End => "end",
+    };
+    vec![
+        name.into(),
+        end.into(),
+        number(tip.position.x),
+        number(tip.position.y),
+        known(tip.k1),
+        known(tip.k2),
+        known(tip.k_uncertainty),
+        known(tip.j),
+        known(tip.t_stress),
+        tip.status.name().into(),
+    ]
+}
+
+/// Columns of equal width, right-aligned but for those in `left`.
+fn aligned(head: &[&str], rows: &[Vec<String>], left: &[usize]) -> String {
+    let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).chain([head[k].len()]).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..head.len()).map(width).collect();
+    let head: Vec<String> = head.iter().map(|s| s.to_string()).collect();
+    let mut text = String::new();
+    for row in std::iter::once(&head).chain(rows) {
+        let cell = |k: usize| match left.contains(&k) {
+            true => format!("{:<1$}", row[k], widths[k]),
+            false => format!("{:>1$}", row[k], widths[k]),
+        };
+        let line: Vec<String> = (0..row.len()).map(cell).collect();
+        text += line.join("  ").trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+/// Six significant digits.
+pub fn number(v: f64) -> String {
+    if v == 0.0 || !v.is_finite() {
+        return if v == 0.0 { "0".into() } else { v.to_string() };
+    }
+    let scientific = format!("{v:.5e}");
+    let exponent: i32 = scientific.split_once('e').and_then(|s| s.1.parse().ok()).unwrap_or(0);
+    match exponent {
+        -4..=5 => format!("{v:.*}", (5 - exponent) as usize),
+        _ => scientific,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_digits() {
+        let texts = [34.0425, -0.00045371, 1234567.8, 0.0, 1e-9, 999999.7, 210e3].map(number);
+        assert_eq!(texts, ["34.0425", "-0.000453710", "1.23457e6", "0", "1.00000e-9", "1.00000e6", "210000"]);
+    }
+
+    #[test]
+    fn columns_line_up() {
+        let rows = vec![vec!["a".to_string(), "1.5".into()], vec!["long".into(), "-22.25".into()]];
+        assert_eq!(aligned(&["part", "x"], &rows, &[0]), "part       x\na        1.5\nlong  -22.25\n");
+    }
+}

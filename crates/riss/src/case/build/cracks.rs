@@ -1,0 +1,264 @@
+//! Crack paths: ends put on the boundary or recognized as tips, everything between them inside the body.
+
+use super::crossings::{Segment, first_contact, folds_back, meeting_parameters};
+use super::outline::vector;
+use super::report::Report;
+use crate::case::schema;
+use crate::crack::CrackPath;
+use crate::geometry::curve::Curve;
+use crate::math::Vector2;
+use crate::model::Domain;
+
+/// An end this close to the boundary, times the size of the body, lies on it.
+const ON_BOUNDARY: f64 = 1e-6;
+/// An end may stick out of the body by this times its size; it is clipped.
+const OVERHANG: f64 = 0.05;
+/// Turn of an arc in one segment [degrees].
+const ARC_STEP: f64 = 2.0;
+/// More points in one crack are refused.
+const MAX_POINTS: usize = 20_000;
+
+/// All cracks that are sound.
+pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Report) -> Vec<CrackPath> {
+    let size = domain.aabb().size().norm();
+    let mut paths: Vec<(usize, CrackPath)> = vec![];
+    let mut names: Vec<String> = vec![];
+    for (index, crack) in list.iter().enumerate() {
+        let key = format!("crack[{index}]");
+        let name = crack.name.clone().unwrap_or_else(|| format!("crack-{}", index + 1));
+        if names.contains(&name) {
+            report.error(format!("{key}.name"), format!("there is already a crack named `{name}`"));
+        }
+        names.push(name.clone());
+        let Some((vertices, key)) = vertices(crack, &key, size, report) else { continue };
+        let mut builder = Builder { domain, size, key, vertices, is_tip: [true; 2] };
+        if builder.is_simple(report) && builder.place_ends(report) && builder.is_inside(report) {
+            let [start_is_tip, end_is_tip] = builder.is_tip;
+            paths.push((index, CrackPath { name, vertices: builder.vertices, start_is_tip, end_is_tip }));
+        }
+    }
+    check_apart(&paths, size, report);
+    paths.into_iter().map(|p| p.1).collect()
+}
+
+fn vertices(crack: &schema::Crack, key: &str, size: f64, report: &mut Report) -> Option<(Vec<Vector2>, String)> {
+    match (&crack.path, &crack.arc) {
+        (Some(path), None) if path.len() > MAX_POINTS => {
+            report.error(format!("{key}.path"), format!("{} points", path.len())).allow(format!("up to {MAX_POINTS}"));
+            None
+        }
+        (Some(path), None) => Some((path.iter().map(|p| vector(*p)).collect(), format!("{key}.path"))),
+        (None, Some(arc)) => Some((arc_vertices(arc, &format!("{key}.arc"), size, report)?, format!("{key}.arc"))),
+        _ => {
+            report.error(key, "a crack has one shape").allow("path or arc");
+            None
+        }
+    }
+}
+
+fn arc_vertices(arc: &schema::CrackArc, key: &str, size: f64, report: &mut Report) -> Option<Vec<Vector2>> {
+    let (start, end) = (vector(arc.start), vector(arc.end));
+    let Some(curve @ Curve::Arc { sweep, radius, .. }) = Curve::arc_through(start, vector(arc.through), end) else {
+        report.error(format!("{key}.through"), "start, through and end lie on a line").suggest("use `path`");
+        return None;
+    };
+    if !(radius < 1e5 * size) {
+        report.error(key, "this arc is as good as straight").suggest("use `path`");
+        return None;
+    }
+    let mut n = (sweep.abs().to_degrees() / ARC_STEP).ceil().max(1.0);
+    if let Some(spacing) = arc.spacing {
+        if !report.positive(format!("{key}.spacing"), spacing) {
+            return None;
+        }
+        n = n.max((curve.length() / spacing).ceil());
+    }
+    if n >= MAX_POINTS as f64 {
+        report.error(format!("{key}.spacing"), format!("too fine: {n} segments")).allow(format!("up to {MAX_POINTS}"));
+        return None;
+    }
+    let mut vertices: Vec<Vector2> = (0..=n as usize).map(|k| curve.point(k as f64 / n)).collect();
+    *vertices.last_mut()? = end;
+    vertices[0] = start;
+    Some(vertices)
+}
+
+/// A crack on its way to a [`CrackPath`].
+struct Builder<'a> {
+    domain: &'a Domain,
+    size: f64,
+    key: String,
+    vertices: Vec<Vector2>,
+    is_tip: [bool; 2],
+}
+
+impl Builder<'_> {
+    fn tolerance(&self) -> f64 {
+        ON_BOUNDARY * self.size
+    }
+
+    fn vertex_key(&self, k: usize) -> String {
+        if self.key.ends_with("path") { format!("{}[{k}]", self.key) } else { self.key.clone() }
+    }
+
+    fn end_index(&self, end: usize) -> usize {
+        if end == 0 { 0 } else { self.vertices.len() - 1 }
+    }
+
+    fn is_simple(&self, report: &mut Report) -> bool {
+        let n = self.vertices.len();
+        if n < 2 {
+            report.error(self.key.clone(), format!("a crack has at least 2 points, this one has {n}"));
+            return false;
+        }
+        let bounds = self.domain.aabb();
+        if !self.vertices.iter().any(|p| (p - bounds.center()).amax() <= self.size) {
+            report.error(self.key.clone(), "this crack lies outside the body");
+            return false;
+        }
+        if let Some(k) = (1..n).find(|&k| !((self.vertices[k] - self.vertices[k - 1]).norm() > self.tolerance())) {
+            report.error(self.vertex_key(k), "this point repeats the one before it");
+            return false;
+        }
+        let segments = segments(&self.vertices, 0);
+        let tolerance = self.tolerance();
+        let contact = first_contact(&segments, tolerance, |i, j| j > i + 1).or_else(|| {
+            (1..n - 1).map(|k| (k - 1, k)).find(|&(i, j)| folds_back(&segments[i], &segments[j], tolerance))
+        });
+        if let Some((_, j)) = contact {
+            report.error(self.vertex_key(j), "the crack crosses or touches itself in the segment after this point");
+        }
+        contact.is_none()
+    }
+
+    /// Snaps, clips or accepts both ends.
+    fn place_ends(&mut self, report: &mut Report) -> bool {
+        let on_boundary = |p: &Vector2| self.domain.distance_to_boundary(*p) <= self.tolerance();
+        if !self.vertices.iter().any(|p| self.domain.contains(*p) || on_boundary(p)) && self.cuts().is_empty() {
+            report.error(self.key.clone(), "this crack lies outside the body");
+            return false;
+        }
+        self.place_end(0, report) && self.place_end(1, report)
+    }
+
+    fn place_end(&mut self, end: usize, report: &mut Report) -> bool {
+        let k = self.end_index(end);
+        let inner = if end == 0 { 1 } else { k - 1 };
+        let (p, q) = (self.vertices[k], self.vertices[inner]);
+        if self.domain.distance_to_boundary(p) <= self.tolerance() {
+            self.vertices[k] = snapped(self.domain, p);
+            self.is_tip[end] = false;
+            return true;
+        }
+        if self.domain.contains(p) {
+            return true;
+        }
+        let cuts = self.domain.edges.iter().flat_map(|e| meeting_parameters(p, q, e, self.tolerance()));
+        let first = cuts.fold(f64::INFINITY, f64::min);
+        let mouth = p + (q - p) * first;
+        let key = self.vertex_key(k);
+        if !first.is_finite() || (mouth - q).norm() <= self.tolerance() {
+            report.error(key, "this end of the crack lies outside the body");
+            return false;
+        }
+        let overhang = (mouth - p).norm();
+        if overhang > OVERHANG * self.size {
+            let message = format!("this end of the crack lies outside the body, by {overhang:.4}");
+            report.error(key, message).suggest(format!("end it on the boundary at [{}, {}]", mouth.x, mouth.y));
+            return false;
+        }
+        self.vertices[k] = snapped(self.domain, mouth);
+        self.is_tip[end] = false;
+        let mouth = self.vertices[k];
+        report.note(key, format!("this end of the crack is clipped at the boundary, at [{}, {}]", mouth.x, mouth.y));
+        true
+    }
+
+    /// Meetings with the boundary: segment, point and edge.
+    fn cuts(&self) -> Vec<(usize, Vector2, usize)> {
+        let mut cuts = vec![];
+        for (k, w) in self.vertices.windows(2).enumerate() {
+            for (e, edge) in self.domain.edges.iter().enumerate() {
+                let at = meeting_parameters(w[0], w[1], edge, self.tolerance());
+                cuts.extend(at.into_iter().map(|s| (k, w[0] + (w[1] - w[0]) * s, e)));
+            }
+        }
+        cuts
+    }
+
+    /// Whether the crack meets the boundary only at its mouths.
+    fn is_inside(&self, report: &mut Report) -> bool {
+        let on_boundary = |p: Vector2| self.domain.distance_to_boundary(p) <= self.tolerance();
+        if let Some(k) = self.vertices.windows(2).position(|w| on_boundary((w[0] + w[1]) * 0.5)) {
+            let along =
+                [0.25, 0.75].iter().all(|&s| on_boundary(self.vertices[k] * (1.0 - s) + self.vertices[k + 1] * s));
+            if along {
+                report.error(self.vertex_key(k), "the crack runs along the boundary after this point");
+                return false;
+            }
+        }
+        let last = self.vertices.len() - 1;
+        // Shallow mouths meet the boundary within a wider tolerance.
+        let at_mouth = |p: Vector2| {
+            [(0, 0), (1, last)]
+                .iter()
+                .any(|&(end, k)| !self.is_tip[end] && (p - self.vertices[k]).norm() <= 10.0 * self.tolerance())
+        };
+        let cut = self.cuts().into_iter().find(|c| !at_mouth(c.1));
+        let Some((k, p, edge)) = cut else {
+            let middle = (self.vertices[0] + self.vertices[1]) * 0.5;
+            if !self.domain.contains(middle) {
+                report.error(self.key.clone(), "this crack lies outside the body");
+                return false;
+            }
+            return true;
+        };
+        let message = match self.hole_of(edge) {
+            Some(name) => format!("the crack passes through the hole `{name}` at ({:.6}, {:.6})", p.x, p.y),
+            None => format!("the crack meets the boundary at ({:.6}, {:.6}), between its ends", p.x, p.y),
+        };
+        report.error(self.vertex_key(k), message).suggest("split it into two cracks that end there");
+        false
+    }
+
+    fn hole_of(&self, edge: usize) -> Option<&str> {
+        let is_outline = self.domain.outline().contains(&edge);
+        let part = self.domain.parts.iter().find(|p| p.edges.contains(&edge))?;
+        (!is_outline).then_some(part.name.as_str())
+    }
+}
+
+/// The closest point of the boundary; exact on edges along an axis.
+fn snapped(domain: &Domain, p: Vector2) -> Vector2 {
+    if domain.distance_to_boundary(p) == 0.0 {
+        return p;
+    }
+    let (edge, t) = domain.closest_edge(p);
+    let mut q = domain.edges[edge].point(t);
+    if let Curve::Line { start, end } = domain.edges[edge] {
+        for axis in 0..2 {
+            if start[axis] == end[axis] {
+                q[axis] = start[axis];
+            }
+        }
+    }
+    q
+}
+
+fn segments(vertices: &[Vector2], chain: usize) -> Vec<Segment> {
+    let all = vertices.windows(2).enumerate();
+    all.map(|(edge, w)| Segment { ends: (w[0], w[1]), chain, edge }).collect()
+}
+
+fn check_apart(paths: &[(usize, CrackPath)], size: f64, report: &mut Report) {
+    let all: Vec<Segment> = paths.iter().enumerate().flat_map(|(c, p)| segments(&p.1.vertices, c)).collect();
+    let contact = first_contact(&all, ON_BOUNDARY * size, |i, j| all[i].chain != all[j].chain);
+    if let Some((i, j)) = contact {
+        let (s, t) = (&all[i], &all[j]);
+        let cross = crate::geometry::predicates::segments_cross(s.ends.0, s.ends.1, t.ends.0, t.ends.1);
+        let (index, path) = (paths[t.chain].0, &paths[s.chain].1);
+        let verb = if cross { "crosses" } else { "touches" };
+        let message = format!("this crack {verb} the crack `{}`; cracks that meet are not supported yet", path.name);
+        report.error(format!("crack[{index}]"), message);
+    }
+}

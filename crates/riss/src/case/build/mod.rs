@@ -1,0 +1,138 @@
+//! From what the case says to the checked model; every problem is reported, none is guessed away.
+
+mod boundary;
+mod cracks;
+mod crossings;
+mod exact;
+mod expression;
+mod loads;
+mod mesh;
+mod outline;
+mod parts;
+mod report;
+mod settings;
+mod supports;
+
+use super::document::Document;
+use super::problem::Problem;
+use super::schema::{self, CaseFile, OutputSettings};
+use crate::analysis::Settings;
+use crate::material::Elasticity;
+use crate::model::{Domain, Model, RigidMotion};
+use boundary::Boundary;
+use loads::Setting;
+use report::Report;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// The name that stands for every outer edge.
+const OUTLINE: &str = "outline";
+
+/// Model, settings, output and notes; `None` or more problems if the case is not valid.
+pub(super) fn build(
+    document: &Document,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) -> Option<(Model, Settings, OutputSettings, Vec<Problem>)> {
+    let faulty = super::check::check(document, &super::json_schema(), problems);
+    let file = deserialize(document, &faulty, problems)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut report = Report { document, problems, notes: vec![] };
+    let material = material(&file.material, &mut report);
+    let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
+    let mut settings = settings::settings(&file, folder, &mut report);
+    if ["geometry", "hole", "part"].iter().any(|key| faulty.contains(*key)) {
+        return None;
+    }
+    let domain = domain(&file, folder, &mut report)?;
+    settings::check_positions(&mut settings, &file, &domain, &mut report);
+    let cracks = cracks::cracks(&file.crack, &domain, &mut report);
+    let mut setting = Setting { domain, material, exact, file: &file };
+    let loads = loads::loads(&setting, &mut report);
+    let supports = supports::supports(&mut setting, &mut report);
+    // What a faulty section may have said is not held against the rest.
+    let sound = |keys: &[&str]| keys.iter().all(|key| !faulty.contains(*key)) && report.problems.is_empty();
+    if sound(&[]) {
+        supports::check_held(&setting, &supports, &mut report);
+        if !loads.acts && !supports.acts {
+            let mut problem = Problem::new("load", "nothing loads the body");
+            problem
+                .suggest("add a [[load]], [remote_stress], [[point_load]], [body_force] or a prescribed displacement");
+            report.problems.push(problem);
+        }
+    }
+    let model = Model {
+        title: file.title.clone().unwrap_or_else(|| default_title(path)),
+        thickness: file.material.thickness.unwrap_or(1.0),
+        rigid_motion: match file.rigid_motion {
+            schema::RigidMotion::Supported => RigidMotion::Supported,
+            schema::RigidMotion::MeanIsZero => RigidMotion::MeanIsZero,
+        },
+        domain: setting.domain,
+        material,
+        cracks,
+        loads: loads.boundary,
+        body_force: loads.body_force,
+        point_loads: loads.points,
+        supports: supports.boundary,
+        point_supports: supports.points,
+        springs: supports.springs,
+        exact: setting.exact,
+    };
+    Some((model, settings, file.output, report.notes))
+}
+
+/// Name of the file, or of its folder if the file is just called case.toml.
+fn default_title(path: &Path) -> String {
+    let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
+    let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    if stem == "case" { folder.unwrap_or(stem) } else { stem }
+}
+
+/// The case without its faulty sections; placeholders stand for required ones.
+fn deserialize(document: &Document, faulty: &BTreeSet<String>, problems: &mut Vec<Problem>) -> Option<CaseFile> {
+    let mut table = document.to_toml();
+    for key in faulty {
+        table.remove(key);
+        let placeholder = match key.as_str() {
+            "material" => "young = 1\npoisson = 0.3\nplane = 'strain'",
+            "geometry" => "rectangle = { lower = [0, 0], upper = [1, 1] }",
+            _ => continue,
+        };
+        table.insert(key.clone(), toml::Value::Table(placeholder.parse().expect("placeholders are TOML")));
+    }
+    match table.try_into() {
+        Ok(file) => Some(file),
+        // The schema check has seen the same types, so this is a last resort.
+        Err(e) => {
+            problems.push(Problem::new("", e.to_string().trim_end().replace('\n', ", ")));
+            None
+        }
+    }
+}
+
+fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
+    report.positive("material.young", m.young);
+    if !(m.poisson > -1.0 && m.poisson < 0.5) {
+        report.error("material.poisson", "out of range").allow("above -1 and below 0.5");
+    }
+    if let Some(thickness) = m.thickness {
+        report.positive("material.thickness", thickness);
+    }
+    Elasticity { young: m.young, poisson: m.poisson, plane: m.plane }
+}
+
+fn domain(file: &CaseFile, folder: &Path, report: &mut Report) -> Option<Domain> {
+    let mut boundary = Boundary::default();
+    let mut sound = outline::add_outline(&mut boundary, &file.geometry, folder, report).is_some();
+    for (index, hole) in file.hole.iter().enumerate() {
+        sound &= outline::add_hole(&mut boundary, hole, index, report).is_some();
+    }
+    if !sound || !crossings::check_loops(&boundary, report) {
+        return None;
+    }
+    for (index, part) in file.part.iter().enumerate() {
+        sound &= parts::add_part(&mut boundary, part, index, report).is_some();
+    }
+    sound.then(|| boundary.into_domain())
+}

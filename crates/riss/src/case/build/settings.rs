@@ -1,0 +1,167 @@
+//! Numerical choices: what ranges alone do not tell.
+
+use super::outline::vector;
+use super::report::Report;
+use crate::analysis::Settings;
+use crate::approximation::settings::Basis;
+use crate::case::schema::{self, CaseFile, NodeFile};
+use crate::integration::settings::Scheme;
+use crate::model::Domain;
+use crate::nodes::settings::{Layout, Listed, NodeSettings, Star};
+use crate::system::ConstraintMethod;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Node positions this close to the boundary, times the size of the body, are left to the boundary's own nodes.
+const ON_BOUNDARY: f64 = 1e-6;
+
+/// The settings as far as they can be told without the body.
+pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> Settings {
+    check_approximation(file, report);
+    if let Scheme::Cells { size } = file.integration.scheme {
+        report.positive("integration.scheme.cells.size", size);
+    }
+    match file.constraints {
+        ConstraintMethod::Nitsche { factor } => report.positive("constraints.nitsche.factor", factor),
+        ConstraintMethod::Penalty { factor } => report.positive("constraints.penalty.factor", factor),
+        ConstraintMethod::LagrangeMultipliers | ConstraintMethod::ModifiedVariational => true,
+    };
+    if let Some(radii) = &file.fracture.radii {
+        if radii.len() < 3 {
+            let message = format!("{} radii, the spread over them needs 3", radii.len());
+            report.error("fracture.radii", message).allow("at least 3, positive, ascending");
+        } else {
+            check_ascending(radii, "fracture.radii", report);
+        }
+    }
+    Settings {
+        nodes: nodes(&file.nodes, folder, report),
+        approximation: file.approximation,
+        integration: file.integration,
+        constraints: file.constraints,
+        solver: file.solver,
+        fracture: file.fracture.clone(),
+    }
+}
+
+fn check_approximation(file: &CaseFile, report: &mut Report) {
+    let least = match file.approximation.basis {
+        Basis::Linear => 1.01,
+        Basis::Quadratic => 2.0,
+    };
+    let dilation = file.approximation.dilation();
+    if dilation < least {
+        let message = "too few neighbors for the basis";
+        report.error("approximation.dilation", message).allow(format!("{least} to 10"));
+    }
+}
+
+fn check_ascending(radii: &[f64], key: &str, report: &mut Report) {
+    if radii.first().is_none_or(|r| *r <= 0.0) || radii.windows(2).any(|w| w[1] <= w[0]) {
+        report.error(key, "radii must be positive and ascending");
+    }
+}
+
+fn nodes(nodes: &schema::Nodes, folder: &Path, report: &mut Report) -> NodeSettings {
+    let layout = match &nodes.layout {
+        schema::Layout::Graded(graded) => {
+            for (name, value) in [("spacing", graded.spacing), ("tip_spacing", graded.tip_spacing)] {
+                if let Some(value) = value {
+                    report.positive(format!("nodes.layout.graded.{name}"), value);
+                }
+            }
+            if let (Some(spacing), Some(tip)) = (graded.spacing, graded.tip_spacing) {
+                if tip > spacing {
+                    report.error("nodes.layout.graded.tip_spacing", "must not exceed `spacing`");
+                }
+            }
+            Layout::Graded(graded.clone())
+        }
+        schema::Layout::Structured(grid) => Layout::Structured(grid.clone()),
+        schema::Layout::Listed(listed) => Layout::Listed(listed.clone()),
+        schema::Layout::File(file) => Layout::Listed(Listed { positions: read_nodes(file, folder, report) }),
+    };
+    if let Some(Star { radii, .. }) = &nodes.star {
+        check_ascending(radii, "nodes.star.radii", report);
+    }
+    NodeSettings { layout, star: nodes.star.clone() }
+}
+
+/// Positions from a file with `x,y` a line; `#` begins a comment, and a first line of names is passed over.
+fn read_nodes(file: &NodeFile, folder: &Path, report: &mut Report) -> Vec<[f64; 2]> {
+    let key = "nodes.layout.file.path";
+    let text = match crate::case::read_text(&folder.join(&file.path), crate::case::MAX_MESH_BYTES) {
+        Ok(text) => text,
+        Err(problem) => {
+            report.error(key, problem.message);
+            return vec![];
+        }
+    };
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let mut positions = vec![];
+    for (k, record) in reader.records().enumerate() {
+        let record = match record {
+            Ok(record) => record,
+            Err(e) => {
+                report.error(key, format!("{}: {e}", file.path));
+                return vec![];
+            }
+        };
+        let numbers: Vec<f64> = record.iter().map_while(|s| s.parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+        match (numbers.as_slice(), record.len()) {
+            ([x, y], 2) => positions.push([*x, *y]),
+            ([], 2) if k == 0 => {}
+            _ => {
+                let line = record.position().map_or(0, csv::Position::line);
+                let text: String = record.iter().collect::<Vec<_>>().join(",").chars().take(40).collect();
+                report.error(key, format!("{}:{line}: expected x,y, found `{text}`", file.path));
+                return vec![];
+            }
+        }
+    }
+    if positions.is_empty() {
+        report.error(key, format!("{} holds no positions", file.path));
+    }
+    positions
+}
+
+/// Checks listed positions against the body; those on the boundary are left out.
+pub(super) fn check_positions(settings: &mut Settings, file: &CaseFile, domain: &Domain, report: &mut Report) {
+    let Layout::Listed(listed) = &mut settings.nodes.layout else { return };
+    let size = domain.aabb().size().norm();
+    let is_file = matches!(file.nodes.layout, schema::Layout::File(_));
+    let key = |k: usize| match is_file {
+        true => "nodes.layout.file.path".to_string(),
+        false => format!("nodes.layout.listed.positions[{k}]"),
+    };
+    let mut seen = BTreeSet::new();
+    let mut on_boundary = 0;
+    let mut inside = vec![];
+    for (k, p) in listed.positions.iter().enumerate() {
+        let at = vector(*p);
+        // Adding zero turns -0 into 0.
+        let is_new = seen.insert(p.map(|v| (v + 0.0).to_bits()));
+        if !is_new {
+            report.error(key(k), format!("the node at ({}, {}) is listed twice", at.x, at.y));
+            return;
+        }
+        if domain.distance_to_boundary(at) <= ON_BOUNDARY * size {
+            on_boundary += 1;
+        } else if domain.contains(at) {
+            inside.push(*p);
+        } else {
+            report.error(key(k), format!("the node at ({}, {}) lies outside the body", at.x, at.y));
+            return;
+        }
+    }
+    if on_boundary > 0 {
+        let message = format!("{on_boundary} listed nodes lie on the boundary; the nodes along it take their place");
+        report.note("nodes.layout", message);
+    }
+    listed.positions = inside;
+}

@@ -1,0 +1,290 @@
+//! The case file as a tree of values that know where they were written; overrides are set in it.
+
+use super::problem::{Origin, Problem};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub content: Content,
+    pub origin: Origin,
+    /// Bytes of the value.
+    pub span: Range<usize>,
+    /// Bytes of its key; those of the value for list elements.
+    pub key_span: Range<usize>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Content {
+    Table(BTreeMap<String, Node>),
+    List(Vec<Node>),
+    Text(String),
+    Integer(i64),
+    Float(f64),
+    Boolean(bool),
+    Date(String),
+}
+
+impl Node {
+    /// What it is, for messages.
+    pub fn kind(&self) -> &'static str {
+        match self.content {
+            Content::Table(_) => "a table",
+            Content::List(_) => "a list",
+            Content::Text(_) => "text",
+            Content::Integer(_) | Content::Float(_) => "a number",
+            Content::Boolean(_) => "true or false",
+            Content::Date(_) => "a date",
+        }
+    }
+
+    fn to_toml(&self) -> toml::Value {
+        match &self.content {
+            Content::Table(t) => toml::Value::Table(t.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()),
+            Content::List(l) => toml::Value::Array(l.iter().map(Self::to_toml).collect()),
+            Content::Text(s) | Content::Date(s) => toml::Value::String(s.clone()),
+            Content::Integer(i) => toml::Value::Integer(*i),
+            Content::Float(v) => toml::Value::Float(*v),
+            Content::Boolean(b) => toml::Value::Boolean(*b),
+        }
+    }
+}
+
+/// The whole case as written.
+pub(super) struct Document {
+    pub root: BTreeMap<String, Node>,
+    pub text: String,
+    pub overrides: Vec<String>,
+}
+
+impl Document {
+    /// Parses a case and sets the overrides; what cannot be parsed is reported and left out.
+    pub fn parse(text: &str, overrides: &[String], problems: &mut Vec<Problem>) -> Self {
+        let (table, errors) = DeTable::parse_recoverable(text);
+        for error in errors {
+            let mut problem = Problem::new("", error.message().replace('\n', ", "));
+            problem.place(Origin::File, text, error.span().unwrap_or(0..0));
+            problems.push(problem);
+        }
+        let mut document = Self {
+            root: convert_table(table.into_inner(), Origin::File),
+            text: text.into(),
+            overrides: overrides.to_vec(),
+        };
+        for (index, text) in overrides.iter().enumerate() {
+            if let Err(mut problem) = document.set(index, text) {
+                problem.origin = Origin::Override(index);
+                problems.push(problem);
+            }
+        }
+        document
+    }
+
+    /// The value at a key path such as `crack[0].path[1]`, or the last one on the way to it.
+    pub fn find(&self, key: &str) -> Option<&Node> {
+        let mut steps = steps(key);
+        let mut node = self.root.get(steps.next()?)?;
+        for step in steps {
+            let next = match &node.content {
+                Content::Table(table) => table.get(step),
+                Content::List(list) => step.parse::<usize>().ok().and_then(|k| list.get(k)),
+                _ => None,
+            };
+            match next {
+                Some(next) => node = next,
+                None => return Some(node),
+            }
+        }
+        Some(node)
+    }
+
+    /// Puts a problem at the value of its key, or at the table that lacks it.
+    pub fn locate(&self, problem: &mut Problem) {
+        let Some(node) = self.find(&problem.key) else { return };
+        let text = self.text_of(node.origin);
+        let span = match node.content {
+            Content::Table(_) => node.key_span.clone(),
+            _ => node.span.clone(),
+        };
+        if problem.value.is_none() {
+            problem.value = self.written(node);
+        }
+        problem.place(node.origin, text, span);
+    }
+
+    /// The text of a value as it stands in the file, if it is short.
+    pub fn written(&self, node: &Node) -> Option<String> {
+        if matches!(node.content, Content::Table(_)) {
+            return None;
+        }
+        let text = self.text_of(node.origin).get(node.span.clone())?;
+        (!text.is_empty() && text.chars().count() <= 60 && !text.contains('\n')).then(|| text.to_string())
+    }
+
+    /// The text that an origin stands for.
+    pub fn text_of(&self, origin: Origin) -> &str {
+        match origin {
+            Origin::File => &self.text,
+            Origin::Override(index) => &self.overrides[index],
+        }
+    }
+
+    /// One top-level value as plain TOML.
+    pub fn to_toml(&self) -> toml::Table {
+        self.root.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()
+    }
+
+    fn set(&mut self, index: usize, text: &str) -> Result<(), Problem> {
+        let bad = |message: &str| Problem::new("", message);
+        let Some((key, value)) = text.split_once('=') else {
+            let mut problem = bad("an override has the form key=value");
+            problem.suggest("for example --set material.young=210e9");
+            return Err(problem);
+        };
+        let path: Vec<&str> = steps(key.trim()).collect();
+        if path.is_empty() || path.len() > 20 || path.iter().any(|step| step.is_empty()) {
+            return Err(bad("the key of an override is a dotted path such as material.young or crack[0].path"));
+        }
+        let offset = text.len() - value.len();
+        let mut node = match DeValue::parse(value.trim()) {
+            Ok(parsed) => convert(parsed.into_inner(), 0..0, Origin::Override(index)),
+            // Whatever is no TOML value is text, so that names need no quotes.
+            Err(_) => Node {
+                content: Content::Text(value.trim().into()),
+                origin: Origin::Override(index),
+                span: 0..0,
+                key_span: 0..0,
+            },
+        };
+        place_all(&mut node, &(offset..text.len()), &(0..offset - 1));
+        insert(&mut self.root, &path, node).map_err(|message| bad(&message))
+    }
+}
+
+/// The steps of a key path: names and list indices.
+fn steps(key: &str) -> impl Iterator<Item = &str> {
+    key.split(['.', '[']).map(|step| step.trim_end_matches(']'))
+}
+
+fn insert(table: &mut BTreeMap<String, Node>, path: &[&str], value: Node) -> Result<(), String> {
+    let (first, rest) = (path[0], &path[1..]);
+    if rest.is_empty() {
+        table.insert(first.into(), value);
+        return Ok(());
+    }
+    let blank = Node { content: Content::Table(BTreeMap::new()), ..value.clone() };
+    insert_below(table.entry(first.into()).or_insert(blank), first, rest, value)
+}
+
+fn insert_below(node: &mut Node, name: &str, rest: &[&str], value: Node) -> Result<(), String> {
+    match &mut node.content {
+        Content::Table(table) => insert(table, rest, value),
+        Content::List(list) => {
+            let n = list.len();
+            let element = rest[0].parse::<usize>().ok().and_then(|k| list.get_mut(k));
+            let Some(element) = element else {
+                return Err(format!(
+                    "`{name}` is a list of {n}; the step after it is an index from 0, not `{}`",
+                    rest[0]
+                ));
+            };
+            if rest.len() == 1 {
+                *element = value;
+                return Ok(());
+            }
+            insert_below(element, rest[0], &rest[1..], value)
+        }
+        // A value such as "lagrange-multipliers" gives way to a table such as penalty.factor.
+        _ => {
+            let mut table = BTreeMap::new();
+            insert(&mut table, rest, value.clone())?;
+            *node = Node { content: Content::Table(table), ..value };
+            Ok(())
+        }
+    }
+}
+
+fn place_all(node: &mut Node, span: &Range<usize>, key_span: &Range<usize>) {
+    node.span = span.clone();
+    node.key_span = key_span.clone();
+    match &mut node.content {
+        Content::Table(table) => table.values_mut().for_each(|n| place_all(n, span, key_span)),
+        Content::List(list) => list.iter_mut().for_each(|n| place_all(n, span, span)),
+        _ => {}
+    }
+}
+
+fn convert_table(table: DeTable<'_>, origin: Origin) -> BTreeMap<String, Node> {
+    let mut nodes = BTreeMap::new();
+    for (key, value) in table {
+        let key_span = key.span();
+        let span = value.span();
+        let mut node = convert(value.into_inner(), span, origin);
+        node.key_span = key_span;
+        nodes.insert(key.into_inner().into_owned(), node);
+    }
+    nodes
+}
+
+fn convert(value: DeValue<'_>, span: Range<usize>, origin: Origin) -> Node {
+    let content = match value {
+        DeValue::String(s) => Content::Text(s.into_owned()),
+        DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
+            Ok(value) => Content::Integer(value),
+            // Too long for an integer, but still a number.
+            Err(_) => Content::Float(i.as_str().parse().unwrap_or(f64::NAN)),
+        },
+        DeValue::Float(v) => Content::Float(v.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(b) => Content::Boolean(b),
+        DeValue::Datetime(d) => Content::Date(d.to_string()),
+        DeValue::Array(list) => Content::List(
+            list.into_iter()
+                .map(|v| {
+                    let span = v.span();
+                    convert(v.into_inner(), span, origin)
+                })
+                .collect(),
+        ),
+        DeValue::Table(table) => Content::Table(convert_table(table, origin)),
+    };
+    Node { content, origin, key_span: span.clone(), span }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str, overrides: &[&str]) -> (Document, Vec<Problem>) {
+        let overrides: Vec<String> = overrides.iter().map(|s| s.to_string()).collect();
+        let mut problems = vec![];
+        let document = Document::parse(text, &overrides, &mut problems);
+        (document, problems)
+    }
+
+    #[test]
+    fn values_are_found_by_key_path() {
+        let (document, _) = parse("[[crack]]\npath = [[0, 8], [3.5, 8]]\n", &[]);
+        let node = document.find("crack[0].path[1]").unwrap();
+        assert_eq!(document.written(node).as_deref(), Some("[3.5, 8]"));
+        let mut problem = Problem::new("crack[0].name", "missing");
+        document.locate(&mut problem);
+        assert_eq!(problem.line, 1);
+    }
+
+    #[test]
+    fn overrides_replace_add_and_fail() {
+        let text =
+            "constraints = 'lagrange-multipliers'\n[material]\nyoung = 1\n[[crack]]\npath = [[0, 8], [3.5, 8]]\n";
+        let set = ["material.young=2e3", "constraints.penalty.factor=5", "crack[0].path.1=[4, 8]", "title=My plate"];
+        let (document, problems) = parse(text, &set);
+        assert!(problems.is_empty(), "{problems:?}");
+        assert!(matches!(document.find("material.young").unwrap().content, Content::Float(v) if v == 2000.0));
+        assert!(matches!(document.find("constraints.penalty.factor").unwrap().content, Content::Integer(5)));
+        assert!(matches!(document.find("crack[0].path[1][0]").unwrap().content, Content::Integer(4)));
+        assert!(matches!(&document.find("title").unwrap().content, Content::Text(s) if s == "My plate"));
+        let (_, problems) = parse(text, &["young", "crack.x.path=1", "=1", "crack[7].path=1"]);
+        assert_eq!(problems.len(), 4);
+    }
+}
