@@ -1,2 +1,35 @@
-//! Development tasks.
-fn main() {}
+//! `cargo xtask <task>`.
+
+use std::process::ExitCode;
+use xtask::{bench, ci, docs, tidy, verify};
+
+const TASKS: &str = "usage: cargo xtask <task>
+
+  ci      everything that continuous integration runs: format, clippy, tests, documentation
+  tidy    layers, headers, citations, names, file length, case folders
+  verify  runs every case and compares it with its reference values; writes a table
+  docs    writes the generated page of the book, and builds the book where mdbook is installed
+  bench   runs the benchmarks; further words go to `cargo bench`";
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let (task, rest) = match args.split_first() {
+        Some((task, rest)) => (task.as_str(), rest),
+        None => ("", &[][..]),
+    };
+    let outcome = match (task, rest) {
+        ("ci", []) => ci::run_all(),
+        ("tidy", []) => tidy::run(),
+        ("verify", names) => verify::run(names),
+        ("docs", []) => docs::run(),
+        ("bench", rest) => bench::run(rest),
+        _ => Err(TASKS.into()),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("{reason}");
+            ExitCode::FAILURE
+        }
+    }
+}

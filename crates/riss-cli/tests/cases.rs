@@ -1,0 +1,22 @@
+//! Every case folder, run by the `riss` program, meets its reference values.
+
+use std::path::Path;
+use xtask::expected::{Comparison, run_case};
+use xtask::verify::failure;
+
+#[test]
+fn every_case_meets_its_reference_values() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases");
+    let mut failures = vec![];
+    // One after the other: each run uses all cores.
+    for folder in xtask::case_folders(&xtask::root()) {
+        let case = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        match run_case(Path::new(env!("CARGO_BIN_EXE_riss")), &folder, &out.join(&case)) {
+            Ok(run) => {
+                failures.extend(run.comparisons.iter().filter(|c| !Comparison::passed(c)).map(|c| failure(&case, c)))
+            }
+            Err(reason) => failures.push(format!("{case}: {reason}")),
+        }
+    }
+    assert!(failures.is_empty(), "{} failures\n{}", failures.len(), failures.join("\n"));
+}
