@@ -3,7 +3,7 @@
 //! Reports everything that is wrong, where a deserializer would stop at the first mistake.
 
 use super::document::{Content, Document, Node};
-use super::problem::Problem;
+use super::problem::{MAX_PROBLEMS, Problem};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,10 +24,12 @@ pub(super) fn check(document: &Document, schema: &Value, problems: &mut Vec<Prob
     }
     for key in strings(&schema["required"]) {
         if !document.root.contains_key(key) {
+            faulty.insert(key.into());
+        }
+        if !document.root.contains_key(key) && !checker.is_suggested(key, 0) {
             let mut problem = Problem::new(key, "missing");
             problem.suggest(checker.about(&properties[key]));
             checker.problems.push(problem);
-            faulty.insert(key.into());
         }
     }
     faulty
@@ -41,6 +43,9 @@ struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     fn node(&mut self, node: &Node, schema: &'a Value, key: &str) {
+        if self.problems.len() >= MAX_PROBLEMS {
+            return;
+        }
         let choices = self.choices(schema);
         let fitting: Vec<&'a Value> = choices.iter().copied().filter(|s| fits(node, s)).collect();
         if fitting.is_empty() {
@@ -88,6 +93,7 @@ impl<'a> Checker<'a> {
 
     fn table(&mut self, node: &Node, table: &BTreeMap<String, Node>, schema: &'a Value, key: &str) {
         let Some(properties) = schema["properties"].as_object() else { return };
+        let start = self.problems.len();
         for (name, child) in table {
             let path = join(key, name);
             match properties.get(name) {
@@ -96,7 +102,7 @@ impl<'a> Checker<'a> {
             }
         }
         for name in strings(&schema["required"]) {
-            if !table.contains_key(name) {
+            if !table.contains_key(name) && !self.is_suggested(name, start) {
                 let about = self.about(&properties[name]);
                 let mut problem = Problem::new(join(key, name), "missing");
                 problem.suggest(about);
@@ -172,8 +178,17 @@ impl<'a> Checker<'a> {
     }
 
     fn unknown_key(&mut self, path: &str, name: &str, node: &Node, properties: &Map<String, Value>) {
+        if self.problems.len() >= MAX_PROBLEMS {
+            return;
+        }
         let names = properties.keys().map(String::as_str);
         self.place_key(path, node, "unknown key".into()).one_of(name, names);
+    }
+
+    /// Whether an unknown key among the problems from `start` should have been `name`.
+    fn is_suggested(&self, name: &str, start: usize) -> bool {
+        let suggestion = Some(format!("did you mean `{name}`?"));
+        self.problems[start..].iter().any(|p| p.suggestion == suggestion)
     }
 
     fn report(&mut self, key: &str, node: &Node, message: String) -> &mut Problem {
@@ -245,6 +260,7 @@ fn expected(choices: &[&Value]) -> String {
             "object" => "a table".into(),
             "array" => match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
                 (Some(a), Some(b)) if a == b => format!("a list of {a}{}", plural(&schema["items"])),
+                (None, Some(most)) => format!("a list of up to {most}"),
                 _ => "a list".into(),
             },
             _ if !names_of(schema).is_empty() => "a name".into(),

@@ -1,6 +1,6 @@
 //! The case file as a tree of values that know where they were written; overrides are set in it.
 
-use super::problem::{Origin, Problem};
+use super::problem::{MAX_PROBLEMS, Origin, Problem};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -63,7 +63,7 @@ impl Document {
     /// Parses a case and sets the overrides; what cannot be parsed is reported and left out.
     pub fn parse(text: &str, overrides: &[String], problems: &mut Vec<Problem>) -> Self {
         let (table, errors) = DeTable::parse_recoverable(text);
-        for error in errors {
+        for error in errors.into_iter().take(MAX_PROBLEMS) {
             let mut problem = Problem::new("", error.message().replace('\n', ", "));
             problem.place(Origin::File, text, error.span().unwrap_or(0..0));
             problems.push(problem);

@@ -76,6 +76,9 @@ impl Case {
                 notes,
             }),
             _ => {
+                if problems.len() >= problem::MAX_PROBLEMS {
+                    problems.push(Problem::new("", "there may be more problems; mend these first"));
+                }
                 problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
                 Err(CaseErrors { file: path.into(), text: text.into(), overrides: overrides.to_vec(), problems })
             }

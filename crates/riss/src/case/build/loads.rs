@@ -12,6 +12,8 @@ use std::sync::Arc;
 
 /// Points per edge at which fields are tried.
 const SAMPLES: usize = 9;
+/// Most parts in one list.
+const MAX_NAMES: usize = 1000;
 /// A point this far outside the body, times its size, still belongs to it.
 const OFF_BODY: f64 = 1e-6;
 
@@ -37,8 +39,9 @@ impl Setting<'_> {
             Names::One(name) => vec![(name, key.to_string())],
             Names::Many(list) => list.iter().enumerate().map(|(k, n)| (n, format!("{key}[{k}]"))).collect(),
         };
-        if list.is_empty() {
-            report.error(key, "no part is named");
+        if list.is_empty() || list.len() > MAX_NAMES {
+            report.error(key, format!("{} parts are named", list.len())).allow(format!("1 to {MAX_NAMES}"));
+            return vec![];
         }
         let mut parts = vec![];
         for (name, key) in list {
