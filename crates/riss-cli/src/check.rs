@@ -47,7 +47,8 @@ fn describe(model: &Model) -> String {
             .map(|end| crack.frame(end).position)
             .map(|p| format!("({}, {})", number(p.x), number(p.y)))
             .collect();
-        line("crack", format!("{}: length {}, tips at {}", crack.name, number(crack.length()), tips.join(" and ")));
+        let tips = if tips.is_empty() { "no tips".into() } else { format!("tips at {}", tips.join(" and ")) };
+        line("crack", format!("{}: length {}, {tips}", crack.name, number(crack.length())));
     }
     let loads = model.loads.len() + model.point_loads.len() + usize::from(model.body_force.is_some());
     let supports = model.supports.len() + model.point_supports.len() + model.springs.len();

@@ -49,16 +49,19 @@ impl<'a> Checker<'a> {
         let choices = self.choices(schema);
         let fitting: Vec<&'a Value> = choices.iter().copied().filter(|s| fits(node, s)).collect();
         if fitting.is_empty() {
-            let expected = expected(&choices);
-            let message = format!("expected {expected}, found {}", node.kind());
-            self.report(key, node, message);
+            let message = format!("expected {}, found {}", expected(&choices), node.kind());
+            let is_list_of_tables = choices.iter().any(|s| self.is_table(&s["items"]));
+            let problem = self.report(key, node, message);
+            if is_list_of_tables && matches!(node.content, Content::Table(_)) {
+                problem.suggest(format!("write [[{key}]], there may be several"));
+            }
             return;
         }
         match &node.content {
             Content::Table(table) if self.is_tagged(schema) => self.tagged(node, table, &fitting, key),
             Content::Table(table) => self.table(node, table, fitting[0], key),
             Content::List(list) => self.list(node, list, fitting[0], key),
-            Content::Text(text) => self.text(node, text, &fitting, key),
+            Content::Text(text) => self.text(node, text, &choices, key),
             Content::Integer(v) => self.number(node, *v as f64, fitting[0], key),
             Content::Float(v) => self.number(node, *v, fitting[0], key),
             Content::Boolean(_) | Content::Date(_) => {}
@@ -76,6 +79,10 @@ impl<'a> Checker<'a> {
             (None, Some(list)) => list.iter().any(|s| self.is_tagged(s)),
             (None, None) => schema["oneOf"].is_array(),
         }
+    }
+
+    fn is_table(&self, schema: &'a Value) -> bool {
+        schema.is_object() && self.choices(schema).iter().any(|s| s["type"] == "object")
     }
 
     /// The schemas one of which must hold, references resolved and `null` left out.
@@ -154,11 +161,17 @@ impl<'a> Checker<'a> {
 
     fn text(&mut self, node: &Node, text: &str, choices: &[&'a Value], key: &str) {
         let names: Vec<&str> = choices.iter().flat_map(|s| names_of(s)).collect();
-        if !names.is_empty() && !names.contains(&text) {
-            let planned = key == "method" && ["cracking-particles", "collocation"].contains(&text);
-            let message = if planned { "this method is not available yet" } else { "unknown name" };
-            self.report(key, node, message.into()).one_of(text, names);
+        if names.is_empty() || names.contains(&text) {
+            return;
         }
+        let tables: Vec<&str> = choices.iter().flat_map(|s| strings(&s["required"])).collect();
+        if tables.contains(&text) {
+            self.report(key, node, "a table, not a name".into()).suggest(format!("write [{key}.{text}]"));
+            return;
+        }
+        let planned = key == "method" && ["cracking-particles", "collocation"].contains(&text);
+        let message = if planned { "this method is not available yet" } else { "unknown name" };
+        self.report(key, node, message.into()).one_of(text, names.into_iter().chain(tables));
     }
 
     fn number(&mut self, node: &Node, value: f64, schema: &'a Value, key: &str) {
@@ -282,7 +295,8 @@ fn plural(items: &Value) -> &'static str {
 }
 
 fn join(key: &str, name: &str) -> String {
-    format!("{key}.{name}")
+    let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if is_bare { format!("{key}.{name}") } else { format!("{key}.{name:?}") }
 }
 
 fn last(key: &str) -> &str {

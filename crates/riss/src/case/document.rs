@@ -116,7 +116,8 @@ impl Document {
 
     /// The text of a value as it stands in the file, if it is short.
     pub fn written(&self, node: &Node) -> Option<String> {
-        if matches!(node.content, Content::Table(_)) {
+        let is_table = |n: &Node| matches!(n.content, Content::Table(_));
+        if is_table(node) || matches!(&node.content, Content::List(list) if list.iter().any(is_table)) {
             return None;
         }
         let text = self.text_of(node.origin).get(node.span.clone())?;

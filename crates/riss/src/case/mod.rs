@@ -1,11 +1,12 @@
 //! The case file: text in, checked [`Model`] and [`Settings`] out.
 //!
 //! Reading order: [`schema`] (what may be written), [`document`] (what was written), [`check`] (names and types),
-//! [`build`] (geometry and sense). All mistakes are reported together, each at its line.
+//! [`expression`], [`build`] (geometry and sense). All mistakes are reported together, each at its line.
 
 mod build;
 mod check;
 mod document;
+mod expression;
 mod problem;
 mod schema;
 
@@ -126,6 +127,3 @@ fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Problem> {
     }
     Ok(bytes)
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,7 +4,6 @@ mod boundary;
 mod cracks;
 mod crossings;
 mod exact;
-mod expression;
 mod loads;
 mod mesh;
 mod outline;

@@ -80,7 +80,7 @@ fn rectangle(boundary: &mut Boundary, r: &Rectangle, report: &mut Report) -> Opt
 fn circle(boundary: &mut Boundary, d: &Disk, key: &str, name: &str, report: &mut Report) -> Option<Vec<Edge>> {
     report.positive(format!("{key}.radius"), d.radius).then(|| {
         let curve = Curve::circle(vector(d.center), d.radius);
-        vec![Edge { curve, parts: vec![boundary.part(name)], key: format!("{key}.radius") }]
+        vec![Edge { curve, parts: vec![boundary.part(name)], key: key.into() }]
     })
 }
 
