@@ -43,11 +43,11 @@ pub fn run(arguments: &RunArguments) -> u8 {
     if !arguments.quiet {
         diagnostics::report_notes(&case);
     }
-    if let Some(n) = arguments.threads {
-        if let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global() {
-            eprintln!("error: cannot start {n} threads: {e}");
-            return BAD_CASE;
-        }
+    if let Some(n) = arguments.threads
+        && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global()
+    {
+        eprintln!("error: cannot start {n} threads: {e}");
+        return BAD_CASE;
     }
     let mut progress = Progress::new(arguments.quiet);
     let outcome = linear_static(&case.model, &case.settings, &mut progress);

@@ -76,7 +76,7 @@ impl Document {
         for (index, text) in overrides.iter().enumerate() {
             if let Err(mut problem) = document.set(index, text) {
                 problem.origin = Origin::Override(index);
-                problems.push(problem);
+                problems.push(*problem);
             }
         }
         document
@@ -137,8 +137,8 @@ impl Document {
         self.root.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()
     }
 
-    fn set(&mut self, index: usize, text: &str) -> Result<(), Problem> {
-        let bad = |message: &str| Problem::new("", message);
+    fn set(&mut self, index: usize, text: &str) -> Result<(), Box<Problem>> {
+        let bad = |message: &str| Box::new(Problem::new("", message));
         let Some((key, value)) = text.split_once('=') else {
             let mut problem = bad("an override has the form key=value");
             problem.suggest("for example --set material.young=210e9");

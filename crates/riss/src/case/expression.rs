@@ -4,10 +4,13 @@
 
 use crate::model::FieldPoint;
 
+type Unary = fn(f64) -> f64;
+type Binary = fn(f64, f64) -> f64;
+
 /// What an expression may depend on.
 const VARIABLES: [&str; 4] = ["x", "y", "nx", "ny"];
 /// Functions of one argument.
-const UNARY: [(&str, fn(f64) -> f64); 17] = [
+const UNARY: [(&str, Unary); 17] = [
     ("sin", f64::sin),
     ("cos", f64::cos),
     ("tan", f64::tan),
@@ -27,7 +30,7 @@ const UNARY: [(&str, fn(f64) -> f64); 17] = [
     ("ceil", f64::ceil),
 ];
 /// Functions of two arguments.
-const BINARY: [(&str, fn(f64, f64) -> f64); 4] =
+const BINARY: [(&str, Binary); 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("hypot", f64::hypot)];
 /// Longer texts are no expressions.
 const MAX_LENGTH: usize = 1000;
@@ -46,8 +49,8 @@ enum Step {
     Number(f64),
     Variable(usize),
     Negate,
-    Unary(fn(f64) -> f64),
-    Binary(fn(f64, f64) -> f64),
+    Unary(Unary),
+    Binary(Binary),
 }
 
 /// Why a text is no expression.
@@ -158,7 +161,7 @@ impl<'t> Parser<'t> {
         found
     }
 
-    fn binary(&mut self, f: fn(f64, f64) -> f64) {
+    fn binary(&mut self, f: Binary) {
         self.steps.push(Step::Binary(f));
     }
 

@@ -53,7 +53,7 @@ impl Case {
                 file: path.into(),
                 text: String::new(),
                 overrides: overrides.to_vec(),
-                problems: vec![problem],
+                problems: vec![*problem],
             }),
         }
     }
@@ -98,16 +98,16 @@ pub fn json_schema() -> serde_json::Value {
 }
 
 /// The text of a file.
-fn read_text(path: &Path, max_bytes: u64) -> Result<String, Problem> {
+fn read_text(path: &Path, max_bytes: u64) -> Result<String, Box<Problem>> {
     let bytes = read_bytes(path, max_bytes)?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        Problem::new("", format!("the file is not UTF-8 text (first bad byte: number {})", at + 1))
+        Box::new(Problem::new("", format!("the file is not UTF-8 text (first bad byte: number {})", at + 1)))
     })
 }
 
 /// The bytes of a file.
-fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Problem> {
+fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Box<Problem>> {
     use std::io::Read;
     let bad = |e: std::io::Error| {
         let reason = match e.kind() {
@@ -116,14 +116,15 @@ fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Problem> {
             std::io::ErrorKind::PermissionDenied => "no permission to read it".into(),
             _ => e.to_string(),
         };
-        Problem::new("", format!("cannot read {}: {reason}", path.display()))
+        Box::new(Problem::new("", format!("cannot read {}: {reason}", path.display())))
     };
     let file = std::fs::File::open(path).map_err(bad)?;
     let mut bytes = vec![];
     // Read through a limit instead of asking for the size, which devices and pipes do not have.
     file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(bad)?;
     if bytes.len() as u64 > max_bytes {
-        return Err(Problem::new("", format!("{} is larger than {} MB", path.display(), max_bytes / 1_000_000)));
+        let message = format!("{} is larger than {} MB", path.display(), max_bytes / 1_000_000);
+        return Err(Box::new(Problem::new("", message)));
     }
     Ok(bytes)
 }

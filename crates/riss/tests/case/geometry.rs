@@ -85,7 +85,8 @@ fn outline_may_consist_of_arcs_only() {
 
 #[test]
 fn holes_run_clockwise_and_have_their_name() {
-    let hole = "[[hole]]\ncircle = { center = [3, 4], radius = 1 }\n[[hole]]\nname = 'slot'\npolygon = [[2, 9], [4, 9], [4, 10], [2, 10]]\n";
+    let hole = "[[hole]]\ncircle = { center = [3, 4], radius = 1 }\n\
+                [[hole]]\nname = 'slot'\npolygon = [[2, 9], [4, 9], [4, 10], [2, 10]]\n";
     let domain = domain(&format!("[geometry.rectangle]\nlower = [0, 0]\nupper = [7, 16]\n{hole}"));
     assert!((domain.area() - (112.0 - PI - 2.0)).abs() < 1e-12);
     assert!(edges(&domain, "hole-1")[0].area_share() < 0.0);
@@ -120,7 +121,8 @@ fn stretch_of_a_circle_runs_counterclockwise() {
     let rest = with_part(disk, "on = 'edge'\nfrom = [0, 2]\nto = [2, 0]");
     assert!((length(&rest, "grip") - 3.0 * PI).abs() < 1e-13);
     check_joints(&rest);
-    let plate = "[geometry.rectangle]\nlower = [-5, -5]\nupper = [5, 5]\n[[hole]]\nname = 'bolt'\ncircle = { center = [0, 0], radius = 2 }\n";
+    let plate = "[geometry.rectangle]\nlower = [-5, -5]\nupper = [5, 5]\n\
+                 [[hole]]\nname = 'bolt'\ncircle = { center = [0, 0], radius = 2 }\n";
     let upper = with_part(plate, "on = 'bolt'\nfrom = [1.4142, 1.4142]\nto = [-1.4142, 1.4142]");
     assert!((length(&upper, "grip") - PI).abs() < 1e-4);
     let middle = edges(&upper, "grip").iter().map(|e| e.point(0.5).y).fold(f64::INFINITY, f64::min);

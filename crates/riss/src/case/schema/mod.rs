@@ -18,7 +18,7 @@ use serde::Deserialize;
 /// `[x, y]` [length].
 pub(in crate::case) type Point = [f64; 2];
 
-/// A riss case: a linear elastic body in the plane with cracks, loads and supports. Units are free but must be consistent.
+/// A riss case: a linear elastic body in the plane with cracks, loads and supports. Units are free but consistent.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "riss case")]
