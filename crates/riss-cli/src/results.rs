@@ -2,7 +2,7 @@
 
 use riss::analysis::StaticResult;
 use riss::case::Case;
-use serde_json::{Value, json};
+use riss::output::{OutputOptions, RunInfo, RunStatus, results_json, write_results};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -16,28 +16,31 @@ pub struct RunRecord {
     pub peak_memory_bytes: Option<u64>,
 }
 
+impl RunRecord {
+    fn info(&self, case: &Case) -> RunInfo {
+        RunInfo {
+            title: case.model.title.clone(),
+            method: "element-free-galerkin".into(),
+            status: RunStatus::Done,
+            wall_time_s: self.wall_time_s,
+            stage_time_s: self.stage_time_s.clone(),
+            peak_memory_bytes: self.peak_memory_bytes,
+        }
+    }
+}
+
 /// Writes all files of a run into `dir`; returns their paths.
 pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> io::Result<Vec<PathBuf>> {
-    std::fs::create_dir_all(dir)?;
-    let path = dir.join("results.json");
-    std::fs::write(&path, json(case, run, result))?;
-    Ok(vec![path])
+    let output = &case.output;
+    let options = OutputOptions {
+        fields: output.fields,
+        nodes: output.nodes,
+        integration_points: output.integration_points,
+    };
+    write_results(dir, &run.info(case), result, &options)
 }
 
 /// The results as JSON.
 pub fn json(case: &Case, run: &RunRecord, result: &StaticResult) -> String {
-    let tips: Vec<Value> = (result.step.cracks.iter())
-        .flat_map(|c| {
-            c.tips.iter().map(move |t| json!({ "crack": c.name, "K_I": t.k1, "K_II": t.k2, "J": t.j, "T": t.t_stress }))
-        })
-        .collect();
-    let record = json!({
-        "case": case.model.title,
-        "nodes": result.n_nodes,
-        "wall_time_s": run.wall_time_s,
-        "stage_time_s": run.stage_time_s.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
-        "peak_memory_bytes": run.peak_memory_bytes,
-        "tips": tips,
-    });
-    format!("{record:#}\n")
+    results_json(&run.info(case), result)
 }

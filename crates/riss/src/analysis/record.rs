@@ -2,6 +2,8 @@
 
 use crate::crack::End;
 use crate::math::{Matrix2, Vector2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Stages of an analysis, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -113,7 +115,8 @@ pub struct TipRecord {
 }
 
 /// What a tip does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum TipStatus {
     /// Evaluated, not grown.
     Stationary,
@@ -187,6 +190,8 @@ pub struct Fields {
     pub strain: Vec<Matrix2>,
     /// Normal stress out of the plane [stress].
     pub out_of_plane_stress: Vec<f64>,
+    /// Normal strain out of the plane.
+    pub out_of_plane_strain: Vec<f64>,
     /// Von Mises stress [stress].
     pub von_mises: Vec<f64>,
     /// Error indicator: difference between stress and smoothed stress in the energy norm, per point [√(stress)].

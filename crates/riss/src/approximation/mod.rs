@@ -1,5 +1,51 @@
 //! Shape functions. Has never heard of materials or loads.
+//!
+//! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
+//! from the [`weight_function`] of each visible neighbor and the fit in [`mls`].
 
+pub mod discontinuity;
+pub mod mls;
+pub mod moving_least_squares;
 pub mod settings;
+pub mod weight_function;
 
+use crate::math::{Matrix, Vector};
+pub use moving_least_squares::{MovingLeastSquares, Surroundings};
 pub use settings::{ApproximationSettings, Basis, SpacingFrom, SupportShape, WeightFunction};
+
+/// Shape functions at one point. A buffer that is refilled, one per thread.
+#[derive(Clone, Debug, Default)]
+pub struct ShapeFunctions<const D: usize> {
+    /// Nodes whose shape functions are not zero.
+    pub neighbors: Vec<u32>,
+    /// Values.
+    pub values: Vec<f64>,
+    /// Gradients [1/length].
+    pub gradients: Vec<Vector<D>>,
+    /// Second derivatives [1/length²]; empty unless they were asked for.
+    pub second_derivatives: Vec<Matrix<D>>,
+}
+
+impl<const D: usize> ShapeFunctions<D> {
+    /// Forgets the point.
+    pub fn clear(&mut self) {
+        self.neighbors.clear();
+        self.values.clear();
+        self.gradients.clear();
+        self.second_derivatives.clear();
+    }
+
+    /// Field value of nodal parameters, `Σ φ_I u_I`.
+    #[inline]
+    pub fn value(&self, parameters: &[Vector<D>]) -> Vector<D> {
+        let pairs = self.neighbors.iter().zip(&self.values);
+        pairs.fold(Vector::zeros(), |u, (&i, &v)| u + parameters[i as usize] * v)
+    }
+
+    /// Gradient of a vector field of nodal parameters, `[(i, j)] = ∂u_i/∂x_j`.
+    #[inline]
+    pub fn gradient(&self, parameters: &[Vector<D>]) -> Matrix<D> {
+        let pairs = self.neighbors.iter().zip(&self.gradients);
+        pairs.fold(Matrix::zeros(), |g, (&i, d)| g + parameters[i as usize] * d.transpose())
+    }
+}

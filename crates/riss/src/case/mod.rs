@@ -7,6 +7,7 @@ mod build;
 mod check;
 mod document;
 mod expression;
+pub mod gmsh;
 mod problem;
 mod schema;
 

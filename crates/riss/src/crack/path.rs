@@ -2,9 +2,12 @@
 
 use super::tip::TipFrame;
 use crate::math::Vector2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// One of the two ends of a crack path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum End {
     /// The first vertex.
     Start,

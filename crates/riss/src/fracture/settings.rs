@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 pub struct FractureSettings {
     /// Shape of the domains.
     pub domain: TipDomainShape,
+    /// How J is integrated; stress intensity factors always come from domains.
+    pub j_integral: JIntegral,
     /// Radii (half edges for squares) of the domains, at least three, ascending [length]; automatic if not given.
     pub radii: Option<Vec<f64>>,
 }
@@ -22,4 +24,15 @@ pub enum TipDomainShape {
     Disc,
     /// A square around the tip, two sides along the crack.
     Square,
+}
+
+/// Integration of J.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum JIntegral {
+    /// Over the domains: the smoother one.
+    #[default]
+    Domain,
+    /// Along the outlines of the domains.
+    Contour,
 }

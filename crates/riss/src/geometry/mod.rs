@@ -4,6 +4,7 @@
 
 pub mod aabb;
 pub mod curve;
+pub mod obstacles;
 pub mod polygon;
 pub mod predicates;
 pub mod tree;

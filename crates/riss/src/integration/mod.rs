@@ -1,5 +1,24 @@
-//! Integration points.
+//! Integration points: every scheme is lowered to flat lists of them.
+//!
+//! [`cells`] makes them from the triangles between the nodes, [`background`] from a grid that the boundary clips,
+//! [`boundary`] along the edges of the body.
 
+pub mod background;
+pub mod boundary;
+pub mod cells;
+pub mod rules;
 pub mod settings;
 
+use crate::math::Vector;
+pub use boundary::{BoundaryElement, BoundaryPoint, boundary_elements};
+pub use cells::{EdgePoint, IntegrationCells};
 pub use settings::{GradientCorrection, IntegrationSettings, Scheme};
+
+/// A position with its integration weight [length^D].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IntegrationPoint<const D: usize> {
+    /// Position.
+    pub position: Vector<D>,
+    /// Integration weight.
+    pub weight: f64,
+}

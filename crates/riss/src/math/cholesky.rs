@@ -39,6 +39,12 @@ impl<const M: usize> Cholesky<M> {
         Some(Self { lower: l, inverse_diagonal })
     }
 
+    /// Least pivot of `a` over its diagonal entry: 1 for a diagonal matrix, 0 for a singular or indefinite one.
+    pub fn least_pivot(a: &[[f64; M]; M]) -> f64 {
+        let Some(factor) = Self::new(a, 1e-14) else { return 0.0 };
+        (0..M).map(|j| factor.lower[j][j] * factor.lower[j][j] / a[j][j]).fold(1.0, f64::min)
+    }
+
     /// Solves `A x = b`.
     #[inline]
     pub fn solve(&self, b: [f64; M]) -> [f64; M] {

@@ -9,7 +9,7 @@ pub mod support;
 
 use crate::crack::{CrackPath, TipFrame, TipId};
 use crate::exact::ExactField;
-use crate::material::Elasticity;
+use crate::material::{Elasticity, PlaneState};
 pub use domain::{BoundaryPart, Domain, EdgeId, PartId};
 pub use field::{FieldPoint, ScalarField};
 pub use load::{BodyForce, BoundaryLoad, PointLoad, TractionValue};
@@ -48,6 +48,26 @@ pub struct Model {
 }
 
 impl Model {
+    /// A body of unit modulus in plane strain without cracks, loads or supports, to be filled in.
+    pub fn plain(domain: Domain) -> Self {
+        let material = Elasticity { young: 1.0, poisson: 0.3, plane: PlaneState::Strain };
+        Self {
+            title: String::new(),
+            domain,
+            material,
+            thickness: 1.0,
+            cracks: vec![],
+            loads: vec![],
+            body_force: None,
+            point_loads: vec![],
+            supports: vec![],
+            point_supports: vec![],
+            springs: vec![],
+            rigid_motion: RigidMotion::Supported,
+            exact: None,
+        }
+    }
+
     /// All tips, in the order of cracks and ends.
     pub fn tips(&self) -> Vec<(TipId, TipFrame)> {
         let mut tips = vec![];

@@ -1,5 +1,16 @@
-//! The linear system.
+//! The linear system: discretization, assembly, constraints, solution. Has never heard of crack growth.
 
+pub mod block_matrix;
+pub mod constraints;
+pub mod discretization;
+pub mod galerkin;
+pub mod linear_solver;
+pub mod ordering;
+pub mod rigid_motion;
 pub mod settings;
+pub mod solve;
 
+pub use discretization::Discretization;
+pub use galerkin::{LinearSystem, assemble};
 pub use settings::{ConstraintMethod, LinearSolver};
+pub use solve::{Solution, solve};

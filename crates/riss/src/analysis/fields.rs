@@ -1,0 +1,111 @@
+//! Fields sampled for output: displacement, stress, strain and an error indicator at the corners of triangles.
+
+use super::record::{CrackFaces, Fields};
+use crate::approximation::moving_least_squares::Derivatives;
+use crate::approximation::{ShapeFunctions, Surroundings};
+use crate::error::Result;
+use crate::math::{Matrix2, Vector2};
+use crate::model::Model;
+use crate::nodes::Triangulation;
+use crate::nodes::triangulation::SIGHT_SHIFT;
+use crate::system::{Discretization, Solution};
+use rayon::prelude::*;
+
+/// Samples every copy of the triangulation, so that both faces of cracks have their own values.
+///
+/// The error indicator compares the stress with its mean over neighboring points, weighted by the shape functions
+/// [Chung1998].
+///
+/// # Errors
+/// Those of the shape functions.
+pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<Fields> {
+    let material = &model.material;
+    let triangulation = &discrete.triangulation;
+    let samples: Vec<(Vector2, Matrix2)> = (0..triangulation.copies.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
+            let (at, sight) = (triangulation.position(i as u32), triangulation.copies[i].sight);
+            discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
+            Ok((shape.value(&solution.parameters), material.stress(&shape.gradient(&solution.parameters))))
+        })
+        .collect::<Result<_>>()?;
+    let stress: Vec<Matrix2> = samples.iter().map(|s| s.1).collect();
+    let mut nodal = vec![Matrix2::zeros(); discrete.n_nodes()];
+    for (copy, node) in discrete.node_of_copy.iter().enumerate() {
+        if let Some(node) = node {
+            nodal[*node as usize] = stress[copy];
+        }
+    }
+    let error_indicator = (0..stress.len())
+        .into_par_iter()
+        .with_min_len(64)
+        .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
+            let (at, sight) = (triangulation.position(i as u32), triangulation.copies[i].sight);
+            discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
+            let pairs = shape.neighbors.iter().zip(&shape.values);
+            let smoothed = pairs.fold(Matrix2::zeros(), |s, (&n, &v)| s + nodal[n as usize] * v);
+            let difference = smoothed - stress[i];
+            Ok(difference.dot(&material.strain(&difference)).max(0.0).sqrt())
+        })
+        .collect::<Result<_>>()?;
+    Ok(Fields {
+        positions: (0..samples.len()).map(|i| triangulation.position(i as u32)).collect(),
+        triangles: triangulation.triangles.clone(),
+        displacement: samples.iter().map(|s| s.0).collect(),
+        strain: stress.iter().map(|s| material.strain(s)).collect(),
+        out_of_plane_strain: stress.iter().map(|s| material.out_of_plane_strain(s)).collect(),
+        out_of_plane_stress: stress.iter().map(|s| material.out_of_plane_stress(s)).collect(),
+        von_mises: stress.iter().map(|s| material.von_mises(s)).collect(),
+        stress,
+        error_indicator,
+        crack_faces: sample_faces(model, discrete, solution)?,
+    })
+}
+
+/// Displacement of both faces at every point of the triangulation on each crack.
+fn sample_faces(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<Vec<CrackFaces>> {
+    let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
+    let mut result = vec![];
+    for crack in &model.cracks {
+        let mut faces = CrackFaces::default();
+        for (at, left) in points_along(&discrete.triangulation, &crack.vertices) {
+            for (side, list) in [(left, &mut faces.left), (-left, &mut faces.right)] {
+                discrete.approximation.evaluate(at, at + side, Derivatives::First, &mut around, &mut shape)?;
+                list.push(shape.value(&solution.parameters));
+            }
+            faces.positions.push(at);
+        }
+        result.push(faces);
+    }
+    Ok(result)
+}
+
+/// Points of the triangulation on a path, in order, with a small step to its left; at tips the step is zero.
+fn points_along(triangulation: &Triangulation, path: &[Vector2]) -> Vec<(Vector2, Vector2)> {
+    let mut found = vec![];
+    for (k, w) in path.windows(2).enumerate() {
+        let e = w[1] - w[0];
+        let left = crate::math::turn_left(e.normalize());
+        let mut on: Vec<(f64, Vector2)> = vec![];
+        for (i, &p) in triangulation.positions.iter().enumerate() {
+            let t = (p - w[0]).dot(&e) / e.norm_squared();
+            let near = 1e-9 * e.norm();
+            let inside = t * e.norm() > near && (1.0 - t) * e.norm() > near;
+            if inside && (p - w[0]).dot(&left).abs() < near {
+                on.push((t, left * (SIGHT_SHIFT * triangulation.edge_length[i])));
+            }
+        }
+        on.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // A kink sees from both sides along its bisector, an end straight off its segment.
+        let before = if k == 0 { e } else { w[0] - path[k - 1] };
+        let normal = crate::math::turn_left(before.normalize() + e.normalize()).normalize();
+        let step = SIGHT_SHIFT * e.norm().min(before.norm());
+        found.push((w[0], normal * step));
+        found.extend(on.into_iter().map(|(t, left)| (w[0] + e * t, left)));
+    }
+    let last = path[path.len() - 1];
+    let e = last - path[path.len() - 2];
+    found.push((last, crate::math::turn_left(e) * SIGHT_SHIFT));
+    found
+}

@@ -1,0 +1,176 @@
+//! One linear elastic solution and everything that is read from it.
+
+use super::energy::{reactions, strain_energy};
+use super::fields::sample_fields;
+use super::record::*;
+use super::settings::Settings;
+use crate::crack::TipId;
+use crate::error::{Error, Result};
+use crate::fracture::{SolutionField, TipIntegrals, TipView, tip_integrals};
+use crate::model::{Model, RigidMotion};
+use crate::nodes::generate;
+use crate::system::solve::UNBALANCED;
+use crate::system::{ConstraintMethod, Discretization, Solution, assemble, solve};
+
+/// Stabilization of Nitsche's method grows by this factor when the matrix is not definite.
+const STABILIZATION_GROWTH: f64 = 10.0;
+
+/// Solves the linear elastic problem once and evaluates every tip.
+///
+/// # Errors
+/// Every variant of [`Error`]; tips without room for a domain are reported, not refused.
+pub fn linear_static(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<StaticResult> {
+    let mut warnings = Warnings { observer, list: vec![] };
+    let discrete = discretize(model, settings, warnings.observer)?;
+    let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
+    if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
+        warnings.add(format!(
+            "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
+            100.0 * solution.imbalance
+        ));
+    }
+    warnings.observer.stage(Stage::Fracture);
+    let cracks = evaluate_cracks(model, settings, &discrete, &solution, &mut warnings)?;
+    warnings.observer.stage(Stage::Fields);
+    let energy = strain_energy(model, &discrete, &solution)?;
+    let fields = sample_fields(model, &discrete, &solution)?;
+    let reactions = reactions(model, &discrete, &solution, &method)?;
+    let step = StepRecord { step: 0, load_factor: 1.0, cycles: None, cracks, reactions };
+    warnings.observer.step(&step);
+    let nodes = discrete.approximation.nodes();
+    let node_records = (0..nodes.len()).map(|i| NodeRecord {
+        position: nodes.positions[i],
+        support_radius: nodes.support_radii[i].max(),
+        parameters: solution.parameters[i],
+    });
+    Ok(StaticResult {
+        step,
+        n_nodes: nodes.len(),
+        n_unknowns: solution.n_unknowns,
+        n_integration_points: discrete.cells.points.len(),
+        strain_energy: energy.strain_energy * model.thickness,
+        energy_error: energy.relative_error,
+        residual: solution.residual,
+        fields,
+        nodes: node_records.collect(),
+        integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
+        warnings: warnings.list,
+    })
+}
+
+/// Nodes, supports, cells and neighbor lists of a model.
+///
+/// # Errors
+/// [`Error::NodeGeneration`] and [`Error::SingularMomentMatrix`].
+pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<Discretization> {
+    observer.stage(Stage::Nodes);
+    let layered = generate(model, &settings.nodes)?;
+    observer.stage(Stage::Discretization);
+    Discretization::new(model, layered, &settings.approximation, &settings.integration)
+}
+
+struct Warnings<'a> {
+    observer: &'a mut dyn Observer,
+    list: Vec<Warning>,
+}
+
+impl Warnings<'_> {
+    fn add(&mut self, message: String) {
+        let warning = Warning { message };
+        self.observer.warning(&warning);
+        self.list.push(warning);
+    }
+}
+
+/// Assembles and solves; a matrix that Nitsche's terms made indefinite is tried again with a larger stabilization.
+fn solve_once(
+    model: &Model,
+    settings: &Settings,
+    discrete: &Discretization,
+    warnings: &mut Warnings,
+) -> Result<(Solution, ConstraintMethod)> {
+    let mut method = settings.constraints;
+    for attempt in 0.. {
+        warnings.observer.stage(Stage::Assembly);
+        let system = assemble(model, discrete, &method)?;
+        warnings.observer.stage(Stage::Solve);
+        match (solve(model, discrete, system, &method, settings.solver), method) {
+            (Err(Error::Factorization { .. }), ConstraintMethod::Nitsche { factor }) if attempt < 3 => {
+                let factor = factor * STABILIZATION_GROWTH;
+                warnings.add(format!("the stabilization of the supports was too small and is now {factor}"));
+                method = ConstraintMethod::Nitsche { factor };
+            }
+            (result, _) => return Ok((result?, method)),
+        }
+    }
+    unreachable!("the last attempt returns")
+}
+
+fn evaluate_cracks(
+    model: &Model,
+    settings: &Settings,
+    discrete: &Discretization,
+    solution: &Solution,
+    warnings: &mut Warnings,
+) -> Result<Vec<CrackRecord>> {
+    let mut records = vec![];
+    for (crack, path) in model.cracks.iter().enumerate() {
+        let mut tips = vec![];
+        for end in path.tip_ends() {
+            tips.push(evaluate_tip(model, settings, discrete, solution, TipId { crack, end }, warnings)?);
+        }
+        records.push(CrackRecord { name: path.name.clone(), path: path.vertices.clone(), tips });
+    }
+    Ok(records)
+}
+
+fn evaluate_tip(
+    model: &Model,
+    settings: &Settings,
+    discrete: &Discretization,
+    solution: &Solution,
+    id: TipId,
+    warnings: &mut Warnings,
+) -> Result<TipRecord> {
+    let view = TipView::new(model, id);
+    let mut record = TipRecord {
+        end: id.end,
+        position: view.frame.position,
+        angle: view.frame.angle,
+        k1: None,
+        k2: None,
+        k_uncertainty: None,
+        j: None,
+        t_stress: None,
+        configurational_force: None,
+        kink_angle: None,
+        status: TipStatus::NotEvaluated,
+        radii: vec![],
+    };
+    let radii = match view.radii(settings.fracture.domain, settings.fracture.radii.as_deref()) {
+        Ok((radii, note)) => {
+            note.into_iter().for_each(|n| warnings.add(n));
+            radii
+        }
+        Err(e) => {
+            warnings.add(e.to_string());
+            return Ok(record);
+        }
+    };
+    let field = SolutionField { discrete, solution };
+    let found = tip_integrals(&view, &radii, &settings.fracture, &model.material, &field)?;
+    let mean = |get: fn(&TipIntegrals) -> f64| found.iter().map(get).sum::<f64>() / found.len() as f64;
+    let spread = |get: fn(&TipIntegrals) -> f64| {
+        let values = || found.iter().map(get);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    let (k1, k2) = (mean(|t| t.k1), mean(|t| t.k2));
+    record.k1 = Some(k1);
+    record.k2 = Some(k2);
+    record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
+    record.j = Some(mean(|t| t.j));
+    record.t_stress = Some(mean(|t| t.t_stress));
+    record.status = if k1 > 0.0 || k1.abs() < 1e-6 * k2.abs() { TipStatus::Stationary } else { TipStatus::Closed };
+    record.radii = radii;
+    Ok(record)
+}

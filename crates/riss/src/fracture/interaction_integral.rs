@@ -1,0 +1,241 @@
+//! Stress intensity factors, T-stress and J at a tip by domain integrals [Moran1987].
+//!
+//! With `P_1j = W δ_1j - σ_ij u_i,1` in the tip frame, the energy release rate is
+//! `J = -∫ P_1j q,j dA + ∫_faces P_1j m_j q ds`, `m` out of the body. The interaction integral takes the mixed terms of
+//! the solution and an auxiliary field. That field is continued analytically up to the crack itself, however it bends
+//! behind the tip; what traction it then leaves on the faces stands in the face term.
+
+use super::settings::{FractureSettings, JIntegral};
+use super::tip_domain::{DomainPoint, TipView};
+use crate::approximation::moving_least_squares::Derivatives;
+use crate::approximation::{ShapeFunctions, Surroundings};
+use crate::error::Result;
+use crate::exact::crack_tip_field::{TipMode, tip_field};
+use crate::material::Elasticity;
+use crate::math::{Matrix2, Vector2};
+use crate::system::{Discretization, Solution};
+use rayon::prelude::*;
+
+/// Fracture quantities at a tip from one domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TipIntegrals {
+    /// Radius of the domain [length].
+    pub radius: f64,
+    /// Mode I stress intensity factor [stress·√length]; positive opens.
+    pub k1: f64,
+    /// Mode II stress intensity factor [stress·√length]; positive slides the left face ahead.
+    pub k2: f64,
+    /// T-stress [stress].
+    pub t_stress: f64,
+    /// J-integral [stress·length].
+    pub j: f64,
+}
+
+/// A displacement gradient at every point of the body, seen from a side.
+pub trait GradientField: Sync {
+    /// Buffers of one thread.
+    type Buffer: Default;
+    /// `[(i, j)] = ∂u_i/∂x_j` in global axes.
+    fn gradient(&self, at: Vector2, sight: Vector2, buffer: &mut Self::Buffer) -> Result<Matrix2>;
+}
+
+/// The gradient of a solution.
+#[derive(Clone, Copy, Debug)]
+pub struct SolutionField<'a> {
+    /// Where.
+    pub discrete: &'a Discretization,
+    /// What.
+    pub solution: &'a Solution,
+}
+
+impl GradientField for SolutionField<'_> {
+    type Buffer = (Surroundings, ShapeFunctions<2>);
+
+    fn gradient(&self, at: Vector2, sight: Vector2, buffer: &mut Self::Buffer) -> Result<Matrix2> {
+        let (around, shape) = buffer;
+        self.discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
+        Ok(shape.gradient(&self.solution.parameters))
+    }
+}
+
+/// Evaluates every domain of a tip, smallest first.
+///
+/// # Errors
+/// Those of the field.
+pub fn tip_integrals<F: GradientField>(
+    view: &TipView,
+    radii: &[f64],
+    settings: &FractureSettings,
+    material: &Elasticity,
+    field: &F,
+) -> Result<Vec<TipIntegrals>> {
+    radii
+        .iter()
+        .map(|&radius| {
+            let domain = view.domain(settings.domain, radius);
+            let mut sum = integrate(view, &domain.area, material, field, |p, state| {
+                state.eshelby_along(p.q_local(view)).map(|v| -v * p.weight)
+            })?;
+            let faces = integrate(view, &domain.faces, material, field, |p, state| {
+                state.face_term(p.normal_local(view)).map(|v| v * p.weight * p.q.x)
+            })?;
+            (0..4).for_each(|i| sum[i] += faces[i]);
+            let j = match settings.j_integral {
+                JIntegral::Domain => sum[3],
+                JIntegral::Contour => contour_j(view, radius, settings, material, field)?,
+            };
+            let young = material.effective_young();
+            Ok(TipIntegrals {
+                radius,
+                k1: 0.5 * young * sum[0],
+                k2: 0.5 * young * sum[1],
+                t_stress: young * sum[2],
+                j,
+            })
+        })
+        .collect()
+}
+
+/// J over a contour and the bent faces inside [stress·length].
+fn contour_j<F: GradientField>(
+    view: &TipView,
+    radius: f64,
+    settings: &FractureSettings,
+    material: &Elasticity,
+    field: &F,
+) -> Result<f64> {
+    let contour = view.contour(settings.domain, radius);
+    let around = integrate(view, &contour, material, field, |p, state| {
+        state.eshelby_along(p.normal_local(view)).map(|v| v * p.weight)
+    })?;
+    let faces = view.domain(settings.domain, radius).faces;
+    let inside = integrate(view, &faces, material, field, |p, state| {
+        state.face_term(p.normal_local(view)).map(|v| v * p.weight)
+    })?;
+    Ok(around[3] + inside[3])
+}
+
+impl DomainPoint {
+    fn q_local(&self, view: &TipView) -> Vector2 {
+        Vector2::new(self.q.dot(&view.frame.x1()), self.q.dot(&view.frame.x2()))
+    }
+
+    fn normal_local(&self, view: &TipView) -> Vector2 {
+        Vector2::new(self.normal.dot(&view.frame.x1()), self.normal.dot(&view.frame.x2()))
+    }
+}
+
+/// Integrands: interaction with modes I and II and the point force, and the solution with itself.
+type Integrals = [f64; 4];
+
+fn integrate<F: GradientField>(
+    view: &TipView,
+    points: &[DomainPoint],
+    material: &Elasticity,
+    field: &F,
+    integrand: impl Fn(&DomainPoint, &State) -> Integrals + Sync,
+) -> Result<Integrals> {
+    let rotation = Matrix2::from_columns(&[view.frame.x1(), view.frame.x2()]);
+    let values: Vec<Integrals> = points
+        .par_iter()
+        .with_min_len(64)
+        .map_init(F::Buffer::default, |buffer, p| {
+            let gradient = rotation.transpose() * field.gradient(p.position, p.sight, buffer)? * rotation;
+            Ok(integrand(p, &State::new(material, gradient, p)))
+        })
+        .collect::<Result<_>>()?;
+    // In order, so that any number of threads gives the same bits.
+    let mut sum = [0.0; 4];
+    for v in values {
+        (0..4).for_each(|i| sum[i] += v[i]);
+    }
+    Ok(sum)
+}
+
+/// The solution and the auxiliary fields at a point, in the tip frame.
+struct State {
+    gradient: Matrix2,
+    stress: Matrix2,
+    auxiliary: [(Matrix2, Matrix2); 3],
+}
+
+impl State {
+    fn new(material: &Elasticity, gradient: Matrix2, at: &DomainPoint) -> Self {
+        let auxiliary = [TipMode::Opening, TipMode::Sliding, TipMode::PointForce].map(|mode| {
+            let gradient = tip_field(mode, material, at.r, at.theta).1;
+            (gradient, material.stress(&gradient))
+        });
+        Self { gradient, stress: material.stress(&gradient), auxiliary }
+    }
+
+    /// `P_1j v_j`.
+    fn eshelby_along(&self, v: Vector2) -> Integrals {
+        let own = 0.5 * self.stress.dot(&self.gradient) * v.x - (self.stress * v).dot(&self.gradient.column(0));
+        let mixed = self.auxiliary.map(|(gradient, stress)| {
+            self.stress.dot(&gradient) * v.x
+                - (self.stress * v).dot(&gradient.column(0))
+                - (stress * v).dot(&self.gradient.column(0))
+        });
+        [mixed[0], mixed[1], mixed[2], own]
+    }
+
+    /// `P_1j m_j` on a face without traction.
+    fn face_term(&self, m: Vector2) -> Integrals {
+        let own = 0.5 * self.stress.dot(&self.gradient) * m.x;
+        let mixed = self
+            .auxiliary
+            .map(|(gradient, stress)| self.stress.dot(&gradient) * m.x - (stress * m).dot(&self.gradient.column(0)));
+        [mixed[0], mixed[1], mixed[2], own]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crack::{CrackPath, End, TipFrame, TipId};
+    use crate::exact::{CrackTipField, ExactField};
+    use crate::fracture::TipDomainShape;
+    use crate::material::PlaneState;
+
+    struct Exact(CrackTipField, Elasticity);
+
+    impl GradientField for Exact {
+        type Buffer = ();
+        fn gradient(&self, at: Vector2, _: Vector2, _: &mut ()) -> Result<Matrix2> {
+            Ok(self.0.gradient(&self.1, at))
+        }
+    }
+
+    #[test]
+    fn straight_crack_gives_back_what_was_put_in() {
+        let material = Elasticity { young: 7.0, poisson: 0.3, plane: PlaneState::Strain };
+        let crack = CrackPath {
+            name: "c".into(),
+            vertices: vec![Vector2::new(-2.0, -1.0), Vector2::new(0.1, 0.2)],
+            start_is_tip: false,
+            end_is_tip: true,
+        };
+        let frame: TipFrame = crack.frame(End::End);
+        let exact = CrackTipField { tip: frame.position, angle: frame.angle, k1: 1.3, k2: -0.7, t_stress: 0.4 };
+        let view = TipView {
+            id: TipId { crack: 0, end: End::End },
+            frame,
+            path: crack.from_end(End::End),
+            largest_radius: 1.0,
+        };
+        for domain in [TipDomainShape::Disc, TipDomainShape::Square] {
+            let settings = FractureSettings { domain, ..FractureSettings::default() };
+            let field = Exact(exact, material);
+            let found = tip_integrals(&view, &[0.2, 0.9], &settings, &material, &field).unwrap();
+            let j = (1.3f64 * 1.3 + 0.7 * 0.7) / material.effective_young();
+            for t in found {
+                assert!((t.k1 - 1.3).abs() < 1e-6, "{domain:?} {t:?}");
+                assert!((t.k2 + 0.7).abs() < 1e-6, "{domain:?} {t:?}");
+                assert!((t.t_stress - 0.4).abs() < 1e-5, "{domain:?} {t:?}");
+                assert!((t.j - j).abs() < 1e-6, "{domain:?} {t:?}");
+            }
+            let contour = contour_j(&view, 0.5, &settings, &material, &field).unwrap();
+            assert!((contour - j).abs() < 1e-6, "{contour} {j}");
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Domains around a crack tip, cut by the crack however it bends.
+
+use super::settings::TipDomainShape;
+use crate::crack::{TipFrame, TipId};
+use crate::error::{Error, Result};
+use crate::math::gauss_legendre::gauss_legendre;
+use crate::math::{Vector2, turn_left};
+use crate::model::Model;
+use crate::nodes::spacing::free_radius;
+use std::f64::consts::{PI, TAU};
+
+/// Sizes of the automatic domains, over that of the largest one that fits.
+const AUTOMATIC_SIZES: [f64; 3] = [0.5, 0.65, 0.8];
+/// Share of a domain's radius in which q is one and its gradient zero.
+const PLATEAU: f64 = 0.35;
+/// Points across the ring and around it.
+const RADIAL_POINTS: usize = 12;
+const ANGULAR_POINTS: usize = 96;
+/// Points on each crack face segment in the ring.
+const FACE_POINTS: usize = 8;
+
+/// The crack as seen from its tip.
+#[derive(Clone, Debug)]
+pub struct TipView {
+    /// The tip.
+    pub id: TipId,
+    /// Its frame.
+    pub frame: TipFrame,
+    /// Vertices from the tip into the crack.
+    pub path: Vec<Vector2>,
+    /// Largest radius of a domain around the tip.
+    pub largest_radius: f64,
+}
+
+/// An integration point of a domain integral, in the tip frame.
+#[derive(Clone, Copy, Debug)]
+pub struct DomainPoint {
+    /// Position [length].
+    pub position: Vector2,
+    /// From where visibility is asked.
+    pub sight: Vector2,
+    /// Distance from the tip [length].
+    pub r: f64,
+    /// Angle from the direction ahead, continued along a bent crack so that only the crack itself cuts it [rad].
+    pub theta: f64,
+    /// Gradient of q, global axes [1/length]; on faces q itself along the first axis.
+    pub q: Vector2,
+    /// Integration weight [length²], on faces and contours [length].
+    pub weight: f64,
+    /// Normal of the face out of the body, or of the contour away from the tip; zero in the domain.
+    pub normal: Vector2,
+}
+
+/// Points of a domain: the ring where q falls from one to zero, and the crack faces below it.
+#[derive(Clone, Debug, Default)]
+pub struct TipDomain {
+    /// Radius of a disk, half edge of a square [length].
+    pub radius: f64,
+    /// Points in the domain.
+    pub area: Vec<DomainPoint>,
+    /// Points on the crack faces, where they leave the line straight behind the tip.
+    pub faces: Vec<DomainPoint>,
+}
+
+impl TipView {
+    /// The view from a tip of the model.
+    pub fn new(model: &Model, id: TipId) -> Self {
+        let crack = &model.cracks[id.crack];
+        let frame = crack.frame(id.end);
+        let path = crack.from_end(id.end);
+        let free = free_radius(model, id.crack, frame.position);
+        let mut view = Self { id, frame, path, largest_radius: free };
+        view.largest_radius = view.single_crossing(free);
+        view
+    }
+
+    /// Largest radius up to `limit` at which every smaller circle meets the path once.
+    fn single_crossing(&self, limit: f64) -> f64 {
+        let tip = self.frame.position;
+        let mut previous = 0.0;
+        for p in &self.path[1..] {
+            let r = (p - tip).norm();
+            if r < previous {
+                return previous.min(limit) * 0.999;
+            }
+            previous = r;
+            if r > limit {
+                break;
+            }
+        }
+        // The distance along a segment may dip between its ends.
+        for w in self.path.windows(2) {
+            let (a, e) = (w[0] - tip, w[1] - w[0]);
+            if a.norm() > 0.0 && a.dot(&e) < 0.0 {
+                return a.norm().min(limit) * 0.999;
+            }
+        }
+        limit.min(previous)
+    }
+
+    /// Angle of the crack at distance `r`, near π for a straight one.
+    fn crack_angle(&self, r: f64) -> f64 {
+        let tip = self.frame.position;
+        let segment = self.path.windows(2).find(|w| (w[1] - tip).norm() >= r);
+        let w = segment.unwrap_or(&self.path[self.path.len() - 2..]);
+        let (a, e) = (w[0] - tip, w[1] - w[0]);
+        // |a + t e| = r.
+        let (aa, ae, ee) = (a.norm_squared() - r * r, a.dot(&e), e.norm_squared());
+        let t = (-ae + (ae * ae - aa * ee).max(0.0).sqrt()) / ee;
+        let p = a + e * t;
+        let local = Vector2::new(p.dot(&self.frame.x1()), p.dot(&self.frame.x2()));
+        // In (0, 2π): a path that turns around the tip by less than a half turn stays continuous.
+        local.y.atan2(local.x).rem_euclid(TAU)
+    }
+
+    /// Radii to use: those asked for as far as they fit, or three automatic ones. Says what was shrunk.
+    ///
+    /// # Errors
+    /// [`Error::NoTipDomain`] if nothing fits.
+    pub fn radii(&self, shape: TipDomainShape, wanted: Option<&[f64]>) -> Result<(Vec<f64>, Option<String>)> {
+        // A square of half edge c needs room for its corners.
+        let limit = match shape {
+            TipDomainShape::Disc => self.largest_radius,
+            TipDomainShape::Square => self.largest_radius / std::f64::consts::SQRT_2,
+        } * 0.98;
+        if !(limit > 0.0) {
+            return Err(Error::NoTipDomain {
+                tip: self.frame.position,
+                reason: "the tip has no room around it".into(),
+            });
+        }
+        let Some(wanted) = wanted else {
+            return Ok((AUTOMATIC_SIZES.map(|s| s * limit).to_vec(), None));
+        };
+        let largest = wanted.iter().copied().fold(0.0, f64::max);
+        if largest <= limit {
+            return Ok((wanted.to_vec(), None));
+        }
+        let shrunk: Vec<f64> = wanted.iter().map(|r| r * limit / largest).collect();
+        let note = format!(
+            "the domains around the tip at ({:.6}, {:.6}) would meet a boundary, a hole, another crack or the crack's own bend; they were shrunk by a factor {:.3}",
+            self.frame.position.x,
+            self.frame.position.y,
+            limit / largest
+        );
+        Ok((shrunk, Some(note)))
+    }
+
+    /// The domain of a given size.
+    pub fn domain(&self, shape: TipDomainShape, radius: f64) -> TipDomain {
+        let mut domain = TipDomain { radius, ..TipDomain::default() };
+        let (around, across) = (gauss_legendre(ANGULAR_POINTS / 8), gauss_legendre(RADIAL_POINTS));
+        for &(s, ws) in &across {
+            let s = PLATEAU + (1.0 - PLATEAU) * s;
+            for octant in 0..8 {
+                for &(t, wt) in &around {
+                    self.add_area(&mut domain, shape, s, ws * (1.0 - PLATEAU), (octant as f64 + t) / 8.0, wt / 8.0);
+                }
+            }
+        }
+        self.add_faces(&mut domain, shape);
+        domain
+    }
+
+    /// Points of the contour at a given size.
+    pub fn contour(&self, shape: TipDomainShape, radius: f64) -> Vec<DomainPoint> {
+        let mut domain = TipDomain { radius, ..TipDomain::default() };
+        let line = gauss_legendre(ANGULAR_POINTS / 8);
+        for octant in 0..8 {
+            for &(t, wt) in &line {
+                self.add_area(&mut domain, shape, 1.0, 1.0, (octant as f64 + t) / 8.0, wt / 8.0);
+            }
+        }
+        let line_weight = |mut p: DomainPoint| {
+            // Area weight is ds times the ray's advance along the normal, which is -1/|∇q| here.
+            let slope = p.q.norm();
+            p.normal = -p.q / slope;
+            p.weight *= slope * (1.0 - PLATEAU);
+            p
+        };
+        domain.area.into_iter().map(line_weight).collect()
+    }
+
+    /// Adds the point at share `s` of the way out and share `turn` of the way around, from the lower to the upper face.
+    fn add_area(&self, domain: &mut TipDomain, shape: TipDomainShape, s: f64, ws: f64, turn: f64, wt: f64) {
+        // Where the ray leaves the domain depends on the angle, and the angle of the cut on the distance: the angle is
+        // counted from the cut at this share of the way out, so that every level s is a closed path from face to face.
+        let cut = |level: f64| {
+            let mut theta = PI;
+            for _ in 0..60 {
+                let next = self.crack_angle(level * rim(shape, theta) * domain.radius);
+                if (next - theta).abs() < 1e-14 {
+                    break;
+                }
+                theta = next;
+            }
+            theta
+        };
+        let theta_cut = cut(s);
+        let theta = theta_cut - TAU + TAU * turn;
+        let reach = rim(shape, theta) * domain.radius;
+        let r = s * reach;
+        let local = Vector2::new(r * theta.cos(), r * theta.sin());
+        let position = self.frame.global(local);
+        // q = 1 - (s - plateau)/(1 - plateau); its gradient is that of s.
+        let gradient = local_gradient(shape, theta, domain.radius) * (-1.0 / (1.0 - PLATEAU));
+        let q = self.frame.x1() * gradient.x + self.frame.x2() * gradient.y;
+        // dA = r dr dθ with r = s reach(θ).
+        let weight = s * reach * reach * ws * TAU * wt;
+        domain.area.push(DomainPoint { position, sight: position, r, theta, q, weight, normal: Vector2::zeros() });
+    }
+
+    /// Adds both faces of all crack segments inside the domain but the first, on which nothing acts.
+    fn add_faces(&self, domain: &mut TipDomain, shape: TipDomainShape) {
+        let line = gauss_legendre(FACE_POINTS);
+        let tip = self.frame.position;
+        for w in self.path.windows(2).skip(1) {
+            let e = w[1] - w[0];
+            // The path runs away from the tip; material above it (left of x1) is to its right.
+            let left = turn_left(e.normalize());
+            for &(t, wt) in &line {
+                let position = w[0] + e * t;
+                let local = self.frame.local(position);
+                let r = local.norm();
+                let angle = self.crack_angle(r);
+                let s = r / (rim(shape, angle) * domain.radius);
+                let q = ((1.0 - s) / (1.0 - PLATEAU)).clamp(0.0, 1.0);
+                if q == 0.0 {
+                    continue;
+                }
+                for (theta, inward) in [(angle, -left), (angle - TAU, left)] {
+                    let shift = crate::nodes::triangulation::SIGHT_SHIFT * (position - tip).norm().min(e.norm());
+                    domain.faces.push(DomainPoint {
+                        position,
+                        sight: position + inward * shift,
+                        r,
+                        theta,
+                        q: Vector2::new(q, 0.0),
+                        weight: wt * e.norm(),
+                        normal: -inward,
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// Distance to the rim of the domain of unit size in direction `theta`.
+fn rim(shape: TipDomainShape, theta: f64) -> f64 {
+    match shape {
+        TipDomainShape::Disc => 1.0,
+        TipDomainShape::Square => 1.0 / theta.cos().abs().max(theta.sin().abs()),
+    }
+}
+
+/// Gradient of the share of the way out.
+fn local_gradient(shape: TipDomainShape, theta: f64, radius: f64) -> Vector2 {
+    let (sin, cos) = theta.sin_cos();
+    match shape {
+        TipDomainShape::Disc => Vector2::new(cos, sin) / radius,
+        TipDomainShape::Square if cos.abs() >= sin.abs() => Vector2::new(cos.signum() / radius, 0.0),
+        TipDomainShape::Square => Vector2::new(0.0, sin.signum() / radius),
+    }
+}

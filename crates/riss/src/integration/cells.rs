@@ -1,0 +1,310 @@
+//! Cells between the nodes: triangles fitted to boundary and cracks, and rectangles where nodes are regular
+//! (element quadrature [EFG, section 3.2]).
+
+use super::IntegrationPoint;
+use super::rules::{collapsed_rule, triangle_rule};
+use super::settings::IntegrationSettings;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::curve::Curve;
+use crate::math::gauss_legendre::gauss_legendre;
+use crate::math::{Vector2, cross, turn_left};
+use crate::model::Domain;
+use crate::nodes::Triangulation;
+use crate::nodes::triangulation::SIGHT_SHIFT;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// A point on the outline of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgePoint {
+    /// Position.
+    pub position: Vector2,
+    /// From where visibility is asked.
+    pub sight: Vector2,
+    /// Outward unit normal times integration weight [length].
+    pub normal: Vector2,
+}
+
+/// Integration points cell by cell, with points on the cells' outlines for the gradient correction.
+#[derive(Clone, Debug, Default)]
+pub struct IntegrationCells {
+    /// Points of all cells.
+    pub points: Vec<IntegrationPoint<2>>,
+    /// Outline points of all cells.
+    pub edge_points: Vec<EdgePoint>,
+    /// Points of each cell.
+    pub point_ranges: Vec<Range<u32>>,
+    /// Outline points of each cell.
+    pub edge_ranges: Vec<Range<u32>>,
+    /// Corners of each cell, for pictures.
+    pub corners: Vec<Vec<Vector2>>,
+}
+
+impl IntegrationCells {
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.point_ranges.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.point_ranges.is_empty()
+    }
+
+    /// The least box around all points of a cell.
+    pub fn bounds(&self, cell: usize) -> Aabb<2> {
+        let points = self.points[as_usize(&self.point_ranges[cell])].iter().map(|p| p.position);
+        let edges = self.edge_points[as_usize(&self.edge_ranges[cell])].iter().flat_map(|p| [p.position, p.sight]);
+        Aabb::of_points(points.chain(edges))
+    }
+
+    /// Triangles and rectangles of a triangulation.
+    pub fn elements(
+        triangulation: &Triangulation,
+        domain: &Domain,
+        tips: &[Vector2],
+        merge: bool,
+        settings: &IntegrationSettings,
+    ) -> Self {
+        let mut builder = Builder::new(triangulation, domain, tips, settings);
+        let mut done = vec![false; triangulation.triangles.len()];
+        for i in 0..triangulation.triangles.len() {
+            if std::mem::replace(&mut done[i], true) {
+                continue;
+            }
+            match merge.then(|| builder.rectangle_with(i, &done)).flatten() {
+                Some((other, corners)) => {
+                    done[other] = true;
+                    builder.add_rectangle(corners);
+                }
+                None => builder.add_triangle(triangulation.triangles[i]),
+            }
+        }
+        builder.cells
+    }
+
+    /// Ends a cell: everything added since the last call belongs to it.
+    pub(super) fn close(&mut self, corners: Vec<Vector2>) {
+        let start = |ranges: &[Range<u32>]| ranges.last().map_or(0, |r| r.end);
+        let (p, e) = (start(&self.point_ranges), start(&self.edge_ranges));
+        self.point_ranges.push(p..self.points.len() as u32);
+        self.edge_ranges.push(e..self.edge_points.len() as u32);
+        self.corners.push(corners);
+    }
+}
+
+/// A range as slices take it.
+pub fn as_usize(range: &Range<u32>) -> Range<usize> {
+    range.start as usize..range.end as usize
+}
+
+struct Builder<'a> {
+    triangulation: &'a Triangulation,
+    /// Curved boundary pieces by the copies at their ends.
+    arcs: HashMap<[u32; 2], Curve>,
+    /// The triangle to the left of each directed edge.
+    left_of: HashMap<[u32; 2], u32>,
+    is_tip: Vec<bool>,
+    regular: Vec<([f64; 3], f64)>,
+    at_tip: Vec<([f64; 3], f64)>,
+    line: Vec<(f64, f64)>,
+    square: usize,
+    square_at_tip: usize,
+    cells: IntegrationCells,
+}
+
+impl<'a> Builder<'a> {
+    fn new(
+        triangulation: &'a Triangulation,
+        domain: &Domain,
+        tips: &[Vector2],
+        settings: &IntegrationSettings,
+    ) -> Self {
+        let arcs = triangulation
+            .boundary
+            .iter()
+            .filter(|s| matches!(domain.edges[s.edge], Curve::Arc { .. }))
+            .map(|s| (s.points, domain.edges[s.edge].piece(s.range[0], s.range[1])))
+            .collect();
+        let mut left_of = HashMap::new();
+        for (i, t) in triangulation.triangles.iter().enumerate() {
+            for k in 0..3 {
+                left_of.insert([t[k], t[(k + 1) % 3]], i as u32);
+            }
+        }
+        let is_tip = triangulation
+            .copies
+            .iter()
+            .map(|c| tips.iter().any(|t| *t == triangulation.positions[c.point as usize]))
+            .collect();
+        Self {
+            triangulation,
+            arcs,
+            left_of,
+            is_tip,
+            regular: triangle_rule(settings.points),
+            at_tip: collapsed_rule(settings.tip_points),
+            line: gauss_legendre(edge_points(settings)),
+            square: settings.points,
+            square_at_tip: settings.tip_points,
+            cells: IntegrationCells::default(),
+        }
+    }
+
+    /// The neighbor of triangle `i` with which it forms a rectangle, and the corners.
+    fn rectangle_with(&self, i: usize, done: &[bool]) -> Option<(usize, [u32; 4])> {
+        let t = self.triangulation.triangles[i];
+        for k in 0..3 {
+            let [a, b, c] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
+            let Some(&other) = self.left_of.get(&[c, b]) else { continue };
+            if done[other as usize] {
+                continue;
+            }
+            let d = self.triangulation.triangles[other as usize].into_iter().find(|v| *v != b && *v != c)?;
+            let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.triangulation.position(v));
+            let (u, v) = (pb - pa, pc - pa);
+            let small = 1e-9 * (u.norm() + v.norm());
+            let is_rectangle = (pa + u + v - pd).norm() < small && u.dot(&v).abs() < small * u.norm();
+            let corners = [a, b, d, c];
+            let curved = (0..4).any(|k| self.arcs.contains_key(&[corners[k], corners[(k + 1) % 4]]));
+            if is_rectangle && !curved {
+                return Some((other as usize, corners));
+            }
+        }
+        None
+    }
+
+    fn add_rectangle(&mut self, corners: [u32; 4]) {
+        let [a, b, c, d] = corners.map(|v| self.triangulation.position(v));
+        let n = if corners.iter().any(|v| self.is_tip[*v as usize]) { self.square_at_tip } else { self.square };
+        let rule = gauss_legendre(n);
+        let area = cross(b - a, d - a);
+        for &(s, ws) in &rule {
+            for &(t, wt) in &rule {
+                let position = a + (b - a) * s + (d - a) * t;
+                self.cells.points.push(IntegrationPoint { position, weight: ws * wt * area });
+            }
+        }
+        for k in 0..4 {
+            self.add_edge(corners[k], corners[(k + 1) % 4]);
+        }
+        self.cells.close(vec![a, b, c, d]);
+    }
+
+    fn add_triangle(&mut self, corners: [u32; 3]) {
+        let positions = corners.map(|v| self.triangulation.position(v));
+        let arcs: [Option<Curve>; 3] =
+            std::array::from_fn(|k| self.arcs.get(&[corners[k], corners[(k + 1) % 3]]).copied());
+        let tip = (0..3).find(|&k| self.is_tip[corners[k] as usize]);
+        match (arcs.iter().flatten().count(), tip) {
+            (0, Some(k)) => self.add_straight([0, 1, 2].map(|j| positions[(k + j) % 3]), true),
+            (0, None) => self.add_straight(positions, false),
+            (1, _) => {
+                let k = arcs.iter().position(Option::is_some).expect("one is curved");
+                let order = if tip.is_some() { self.square_at_tip } else { self.square };
+                self.add_fan(positions[(k + 2) % 3], arcs[k].expect("it is curved"), order);
+            }
+            _ => {
+                let center = (positions[0] + positions[1] + positions[2]) / 3.0;
+                for k in 0..3 {
+                    let line = Curve::Line { start: positions[k], end: positions[(k + 1) % 3] };
+                    self.add_fan(center, arcs[k].unwrap_or(line), self.square);
+                }
+            }
+        }
+        for k in 0..3 {
+            self.add_edge(corners[k], corners[(k + 1) % 3]);
+        }
+        self.cells.close(positions.to_vec());
+    }
+
+    fn add_straight(&mut self, [a, b, c]: [Vector2; 3], at_tip: bool) {
+        let area = 0.5 * cross(b - a, c - a);
+        for &(l, w) in if at_tip { &self.at_tip } else { &self.regular } {
+            let position = a * l[0] + b * l[1] + c * l[2];
+            self.cells.points.push(IntegrationPoint { position, weight: w * area });
+        }
+    }
+
+    /// The region swept by straight lines from `apex` to the points of a curve: exact up to curved edges.
+    fn add_fan(&mut self, apex: Vector2, curve: Curve, order: usize) {
+        let line = gauss_legendre(order.max(2));
+        for &(t, wt) in &line {
+            let (rim, velocity) = (curve.point(t), curve.velocity(t));
+            for &(s, ws) in &line {
+                let weight = s * cross(rim - apex, velocity) * ws * wt;
+                self.cells.points.push(IntegrationPoint { position: apex + (rim - apex) * s, weight });
+            }
+        }
+    }
+
+    /// Outline points between two corners; the same positions from both sides of an edge.
+    fn add_edge(&mut self, a: u32, b: u32) {
+        let inner = self.left_of.contains_key(&[b, a]);
+        let forward = inner && a > b;
+        let ends = if forward { [b, a] } else { [a, b] };
+        let curve = self.arcs.get(&[a, b]).copied().unwrap_or_else(|| {
+            let [start, end] = ends.map(|v| self.triangulation.position(v));
+            Curve::Line { start, end }
+        });
+        for &(t, w) in &self.line {
+            let (position, velocity) = (curve.point(t), curve.velocity(t));
+            let right = -turn_left(velocity);
+            let sight = if inner { position } else { position - right * SIGHT_SHIFT };
+            let normal = if forward { -right * w } else { right * w };
+            self.cells.edge_points.push(EdgePoint { position, sight, normal });
+        }
+    }
+}
+
+/// Gauss points on each edge of a cell.
+pub(super) fn edge_points(settings: &IntegrationSettings) -> usize {
+    settings.points.clamp(2, 5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crack::CrackPath;
+    use crate::model::Model;
+    use crate::nodes::{NodeSettings, generate};
+
+    fn disk_with_crack() -> Model {
+        let mut model = crate::model::Model::plain(Domain::new(
+            vec![Curve::circle(Vector2::new(0.3, 0.1), 2.0)],
+            vec![vec![Curve::circle(Vector2::new(1.0, 0.5), 0.4)]],
+        ));
+        model.cracks.push(CrackPath {
+            name: "c".into(),
+            vertices: vec![Vector2::new(-0.8, -0.5), Vector2::new(0.2, -0.3), Vector2::new(0.5, -0.9)],
+            start_is_tip: true,
+            end_is_tip: true,
+        });
+        model
+    }
+
+    #[test]
+    fn curved_cells_have_the_exact_area_and_closed_outlines() {
+        let model = disk_with_crack();
+        let layered = generate(&model, &NodeSettings::default()).unwrap();
+        let tips: Vec<_> = model.tips().iter().map(|t| t.1.position).collect();
+        let cells = IntegrationCells::elements(
+            &layered.triangulation,
+            &model.domain,
+            &tips,
+            false,
+            &IntegrationSettings::default(),
+        );
+        let area: f64 = cells.points.iter().map(|p| p.weight).sum();
+        assert!((area - model.domain.area()).abs() < 1e-9, "{area} {}", model.domain.area());
+        assert!(cells.points.iter().all(|p| p.weight > 0.0));
+        for cell in 0..cells.len() {
+            let edges = &cells.edge_points[as_usize(&cells.edge_ranges[cell])];
+            let own: f64 = cells.points[as_usize(&cells.point_ranges[cell])].iter().map(|p| p.weight).sum();
+            let sum = edges.iter().fold(Vector2::zeros(), |s, e| s + e.normal);
+            assert!(sum.norm() < 1e-9);
+            let flux: f64 = edges.iter().map(|e| e.position.dot(&e.normal)).sum();
+            assert!((flux - 2.0 * own).abs() < 1e-9 * own.max(1e-3));
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! From a model and the settings to points and triangles.
+
+use super::chains::{Chains, CrackNodes};
+use super::fill::fill;
+use super::settings::{Layout, NodeSettings, Star};
+use super::spacing::SpacingField;
+use super::triangulation::Triangulation;
+use crate::error::{Error, Result};
+use crate::math::{Vector2, direction};
+use crate::model::Model;
+use std::f64::consts::{PI, TAU};
+
+/// No more nodes than this are generated; a finer spacing is refused with a clear error.
+pub const MAX_NODES: usize = 2_000_000;
+/// Rounds of smoothing of the irregular nodes.
+const SMOOTHING_ROUNDS: usize = 4;
+/// A grid node nearer to the boundary than this, over the spacing, gives way to the boundary's own nodes.
+const BOUNDARY_CLEARANCE: f64 = 0.4;
+
+/// Points of a layout and the triangles between them.
+#[derive(Clone, Debug)]
+pub struct Layered {
+    /// Points, boundary and cracks.
+    pub chains: Chains,
+    /// Triangles with copies at crack faces.
+    pub triangulation: Triangulation,
+    /// Whether the nodes are regular.
+    pub is_regular: bool,
+}
+
+/// Places the nodes of a model.
+pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
+    let mut chains = Chains::default();
+    let is_regular = matches!(settings.layout, Layout::Structured(_));
+    match &settings.layout {
+        Layout::Graded(graded) => {
+            let spacing = SpacingField::of_model(model, graded);
+            chains.add_boundary(model, &|p, _| spacing.at(p));
+            let stars = add_stars(&mut chains, model, settings.star.as_ref());
+            let known = chains.positions.len();
+            chains.add_cracks(model, &spacing, CrackNodes::AtSpacing, known);
+            fill_irregular(&mut chains, model, &spacing, &stars)?;
+        }
+        Layout::Structured(grid) => {
+            let bounds = model.domain.aabb();
+            let step = bounds.size().component_div(&Vector2::new((grid.nx - 1) as f64, (grid.ny - 1) as f64));
+            chains.add_boundary(model, &|_, t| step.x * step.y / (t.x * step.y).hypot(t.y * step.x));
+            let stars = add_stars(&mut chains, model, settings.star.as_ref());
+            let positions = (0..grid.ny).flat_map(|j| {
+                let y = bounds.lower.y + step.y * j as f64;
+                (0..grid.nx).map(move |i| Vector2::new(bounds.lower.x + step.x * i as f64, y))
+            });
+            add_free(&mut chains, model, &stars, positions, step.min());
+            let known = chains.positions.len();
+            chains.add_cracks(model, &SpacingField::uniform(step.min()), CrackNodes::WhereTheyStand, known);
+        }
+        Layout::Listed(listed) => {
+            let spacing = SpacingField::uniform((model.domain.area() / listed.positions.len().max(1) as f64).sqrt());
+            chains.add_boundary(model, &|p, _| spacing.at(p));
+            let stars = add_stars(&mut chains, model, settings.star.as_ref());
+            let positions = listed.positions.iter().map(|p| Vector2::new(p[0], p[1]));
+            add_free(&mut chains, model, &stars, positions, spacing.at(Vector2::zeros()));
+            let known = chains.positions.len();
+            chains.add_cracks(model, &spacing, CrackNodes::WhereTheyStand, known);
+        }
+    }
+    let triangulation = Triangulation::new(&chains)?;
+    Ok(Layered { chains, triangulation, is_regular })
+}
+
+/// A disk in which only the star's own nodes stand.
+type Disk = (Vector2, f64);
+
+/// Tip nodes and rings around them [EFG, section 2.2; Terry 1994]; the first node of a ring stands on the crack.
+fn add_stars(chains: &mut Chains, model: &Model, star: Option<&Star>) -> Vec<Disk> {
+    let Some(star) = star else { return vec![] };
+    let mut disks = vec![];
+    for (tip, frame) in model.tips() {
+        let length = model.cracks[tip.crack].handbook_length();
+        let mut inner = 0.0;
+        chains.push(frame.position, true, star.radii[0] * length);
+        for &radius in &star.radii {
+            let radius = radius * length;
+            let spacing = (radius - inner).min(TAU * radius / star.nodes_per_ring as f64);
+            for k in 0..star.nodes_per_ring {
+                let angle = frame.angle + PI + TAU * k as f64 / star.nodes_per_ring as f64;
+                let p = frame.position + direction(angle) * radius;
+                let room = model.domain.distance_to_boundary(p) > BOUNDARY_CLEARANCE * spacing;
+                let free = chains.positions.iter().all(|q| (q - p).norm() > BOUNDARY_CLEARANCE * spacing);
+                if room && free && model.domain.contains(p) {
+                    chains.push(p, true, spacing);
+                }
+            }
+            inner = radius;
+        }
+        disks.push((frame.position, inner * (1.0 + 1e-9)));
+    }
+    disks
+}
+
+/// Adds given nodes that lie inside, clear of the boundary and of the stars.
+fn add_free(
+    chains: &mut Chains,
+    model: &Model,
+    stars: &[Disk],
+    positions: impl Iterator<Item = Vector2>,
+    spacing: f64,
+) {
+    for p in positions {
+        let in_star = stars.iter().any(|(center, radius)| (p - center).norm() <= *radius);
+        if !in_star && model.domain.distance_to_boundary(p) > BOUNDARY_CLEARANCE * spacing && model.domain.contains(p) {
+            chains.push(p, true, spacing);
+        }
+    }
+}
+
+/// Fills the body with irregular nodes and smooths them.
+fn fill_irregular(chains: &mut Chains, model: &Model, spacing: &SpacingField, stars: &[Disk]) -> Result<()> {
+    let given: Vec<(Vector2, f64)> = chains.positions.iter().copied().zip(chains.spacing.iter().copied()).collect();
+    let inside = |p: Vector2| model.domain.contains(p);
+    let new = fill(&given, spacing, MAX_NODES, &inside);
+    if given.len() + new.len() >= MAX_NODES {
+        return Err(Error::NodeGeneration {
+            reason: format!("the spacing asks for more than {MAX_NODES} nodes; choose a larger one"),
+        });
+    }
+    for (p, h) in new {
+        if stars.iter().all(|(center, radius)| (p - center).norm() > *radius + 0.5 * h) {
+            chains.push(p, true, h);
+        }
+    }
+    for _ in 0..SMOOTHING_ROUNDS {
+        smooth(chains, given.len())?;
+    }
+    Ok(())
+}
+
+/// Moves each free point to the mean of the triangles around it, each weighted by its number of nodes' worth of area.
+fn smooth(chains: &mut Chains, n_fixed: usize) -> Result<()> {
+    let triangulation = Triangulation::new(chains)?;
+    let mut sums = vec![(Vector2::zeros(), 0.0); chains.positions.len()];
+    for t in &triangulation.triangles {
+        let points = t.map(|c| triangulation.copies[c as usize].point as usize);
+        let [a, b, c] = points.map(|p| chains.positions[p]);
+        let h = points.iter().map(|&p| chains.spacing[p]).sum::<f64>() / 3.0;
+        let weight = crate::math::cross(b - a, c - a) / (h * h);
+        for p in points {
+            sums[p].0 += (a + b + c) * (weight / 3.0);
+            sums[p].1 += weight;
+        }
+    }
+    for (i, (sum, weight)) in sums.into_iter().enumerate().skip(n_fixed) {
+        if weight > 0.0 {
+            chains.positions[i] = sum / weight;
+        }
+    }
+    Ok(())
+}

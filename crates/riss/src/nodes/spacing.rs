@@ -1,0 +1,209 @@
+//! How far apart nodes shall stand: smallest at tips, holes and thin ligaments, growing linearly away from them.
+
+use super::settings::Graded;
+use crate::geometry::curve::Curve;
+use crate::geometry::predicates::distance_to_segment;
+use crate::math::{Vector2, cross, turn_left};
+use crate::model::Model;
+
+/// Spacing without any feature, as a fraction of √area.
+const BODY_FRACTION: f64 = 1.0 / 25.0;
+/// Nodes along the radius of the free disk around a tip, before grading.
+const TIP_FRACTION: f64 = 1.0 / 100.0;
+/// Spacing along an arc as a fraction of its radius.
+const ARC_FRACTION: f64 = 0.12;
+/// Spacing as a fraction of the thickness of the body at a boundary point.
+const THICKNESS_FRACTION: f64 = 1.0 / 7.0;
+/// Spacing at a kink of a crack as a fraction of the shorter segment there.
+const KINK_FRACTION: f64 = 1.0 / 12.0;
+/// Spacing at re-entrant corners and where forces act at a point, as a fraction of the body's spacing.
+const SINGULAR_FRACTION: f64 = 1.0 / 8.0;
+/// Spacing where the condition on the boundary changes, as a fraction of the body's spacing and of the shorter edge.
+const CHANGE_FRACTIONS: [f64; 2] = [1.0 / 3.0, 1.0 / 12.0];
+/// Turn of a crack or an outline below which a vertex is smooth [rad].
+const SMOOTH_TURN: f64 = 0.2;
+/// Default growth of the spacing with distance.
+const GROWTH: f64 = 0.2;
+
+/// A spacing that every point of the body can be asked for.
+#[derive(Clone, Debug)]
+pub struct SpacingField {
+    sources: Vec<Source>,
+    largest: f64,
+    growth: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Source {
+    place: Place,
+    spacing: f64,
+}
+
+#[derive(Clone, Debug)]
+enum Place {
+    Point(Vector2),
+    Curve(Curve),
+}
+
+impl SpacingField {
+    /// The same spacing everywhere.
+    pub fn uniform(spacing: f64) -> Self {
+        Self { sources: vec![], largest: spacing, growth: 1.0 }
+    }
+
+    /// The spacing that the features of a model ask for, overruled by what the settings say.
+    pub fn of_model(model: &Model, settings: &Graded) -> Self {
+        let largest = settings.spacing.unwrap_or(BODY_FRACTION * model.domain.area().sqrt());
+        let mut field = Self { sources: vec![], largest, growth: settings.growth.unwrap_or(GROWTH) };
+        field.add_tips(model, settings.tip_spacing);
+        field.add_kinks(model);
+        field.add_edges(model);
+        field.add_changes(model);
+        field.add_thickness(model);
+        for p in model.point_loads.iter().map(|l| l.at).chain(model.point_supports.iter().map(|s| s.at)) {
+            field.add(Place::Point(p), SINGULAR_FRACTION * largest);
+        }
+        field
+    }
+
+    /// Spacing at a point [length].
+    pub fn at(&self, p: Vector2) -> f64 {
+        self.sources.iter().fold(self.largest, |h, source| {
+            let distance = match &source.place {
+                Place::Point(q) => (p - q).norm(),
+                Place::Curve(curve) => curve.distance(p),
+            };
+            h.min(source.spacing + self.growth * distance)
+        })
+    }
+
+    fn add(&mut self, place: Place, spacing: f64) {
+        if spacing < self.largest {
+            self.sources.push(Source { place, spacing });
+        }
+    }
+
+    fn add_tips(&mut self, model: &Model, given: Option<f64>) {
+        for (tip, frame) in model.tips() {
+            let spacing = given.unwrap_or_else(|| TIP_FRACTION * free_radius(model, tip.crack, frame.position));
+            self.add(Place::Point(frame.position), spacing);
+        }
+    }
+
+    fn add_kinks(&mut self, model: &Model) {
+        for crack in &model.cracks {
+            for w in crack.vertices.windows(3) {
+                let (a, b) = (w[1] - w[0], w[2] - w[1]);
+                if cross(a, b).abs().atan2(a.dot(&b)) > SMOOTH_TURN {
+                    self.add(Place::Point(w[1]), KINK_FRACTION * a.norm().min(b.norm()));
+                }
+            }
+        }
+    }
+
+    fn add_edges(&mut self, model: &Model) {
+        let domain = &model.domain;
+        for range in &domain.loops {
+            for edge in range.clone() {
+                let curve = domain.edges[edge];
+                if let Curve::Arc { radius, .. } = curve {
+                    self.add(Place::Curve(curve), ARC_FRACTION * radius);
+                }
+                if curve.length() < 2.0 * self.largest {
+                    self.add(Place::Curve(curve), 0.5 * curve.length());
+                }
+                let next = domain.edges[if edge + 1 == range.end { range.start } else { edge + 1 }];
+                let (before, after) = (curve.tangent(1.0), next.tangent(0.0));
+                // The body lies to the left, so a turn to the right is a re-entrant corner.
+                if cross(before, after).atan2(before.dot(&after)) < -SMOOTH_TURN {
+                    let spacing = SINGULAR_FRACTION * self.largest.min(curve.length()).min(next.length());
+                    self.add(Place::Point(curve.point(1.0)), spacing);
+                }
+            }
+        }
+    }
+
+    /// Stress is singular, or at least steep, where loads or supports begin and end.
+    fn add_changes(&mut self, model: &Model) {
+        let conditions = |edge: usize| -> Vec<(u8, usize)> {
+            let on = |part: usize| model.domain.parts[part].edges.contains(&edge);
+            let loads = model.loads.iter().map(|l| l.part.is_some_and(on));
+            let supports = model.supports.iter().map(|s| on(s.part));
+            let springs = model.springs.iter().map(|s| on(s.part));
+            let hits = |kind: u8, flags: Vec<bool>| flags.into_iter().enumerate().filter(|f| f.1).map(move |f| (kind, f.0));
+            hits(0, loads.collect()).chain(hits(1, supports.collect())).chain(hits(2, springs.collect())).collect()
+        };
+        let domain = &model.domain;
+        for range in &domain.loops {
+            for edge in range.clone() {
+                let next = if edge + 1 == range.end { range.start } else { edge + 1 };
+                let (a, b) = (domain.edges[edge], domain.edges[next]);
+                let turns = cross(a.tangent(1.0), b.tangent(0.0)).abs() > SMOOTH_TURN;
+                let (here, there) = (conditions(edge), conditions(next));
+                let supported = here.iter().chain(&there).any(|c| c.0 > 0);
+                // A free edge beside a loaded one at a corner carries no singularity.
+                if here != there && (supported || !turns) {
+                    let shorter = a.length().min(b.length());
+                    let spacing = (CHANGE_FRACTIONS[0] * self.largest).min(CHANGE_FRACTIONS[1] * shorter);
+                    self.add(Place::Point(a.point(1.0)), spacing);
+                }
+            }
+        }
+    }
+
+    /// Where boundary lies opposite to boundary or a crack runs beside it, some nodes must fit between.
+    fn add_thickness(&mut self, model: &Model) {
+        let domain = &model.domain;
+        let tolerance = 1e-3 * self.largest;
+        let mut walls: Vec<(Vector2, Vector2)> = vec![];
+        for edge in &domain.edges {
+            walls.extend(edge.flattened(tolerance).windows(2).map(|w| (w[0], w[1])));
+        }
+        walls.extend(model.cracks.iter().flat_map(|c| c.segments().collect::<Vec<_>>()));
+        for edge in &domain.edges {
+            let n = ((edge.length() / self.largest).ceil() as usize).clamp(3, 40);
+            for k in 0..n {
+                let t = (k as f64 + 0.5) / n as f64;
+                let (p, inward) = (edge.point(t), -edge.right_normal(t));
+                if let Some(thickness) = ray_length(p + inward * (2.0 * tolerance), inward, &walls) {
+                    self.add(Place::Point(p), THICKNESS_FRACTION * thickness);
+                    self.add(Place::Point(p + inward * thickness), THICKNESS_FRACTION * thickness);
+                }
+            }
+        }
+    }
+}
+
+/// Distance along a ray to the nearest wall.
+fn ray_length(from: Vector2, along: Vector2, walls: &[(Vector2, Vector2)]) -> Option<f64> {
+    let normal = turn_left(along);
+    walls
+        .iter()
+        .filter_map(|&(a, b)| {
+            let (p, q) = ((a - from).dot(&normal), (b - from).dot(&normal));
+            if p * q > 0.0 || p == q {
+                return None;
+            }
+            let x = (a + (b - a) * (p / (p - q)) - from).dot(&along);
+            (x > 0.0).then_some(x)
+        })
+        .min_by(f64::total_cmp)
+}
+
+/// Radius of the largest disk around a tip whose only content is this crack's way to the tip:
+/// no boundary, no other crack, and not the far end of the own crack.
+pub fn free_radius(model: &Model, crack: usize, tip: Vector2) -> f64 {
+    let path = &model.cracks[crack];
+    let mut radius = f64::INFINITY;
+    for (i, other) in model.cracks.iter().enumerate() {
+        if i != crack {
+            radius = other.segments().fold(radius, |r, (a, b)| r.min(distance_to_segment(tip, a, b)));
+        }
+    }
+    let far =
+        if (path.vertices[0] - tip).norm() == 0.0 { path.vertices[path.vertices.len() - 1] } else { path.vertices[0] };
+    let far_is_tip = path.start_is_tip && path.end_is_tip;
+    // Two tips of one crack share its length.
+    radius = radius.min((far - tip).norm() * if far_is_tip { 0.5 } else { 1.0 });
+    radius.min(model.domain.distance_to_boundary(tip))
+}

@@ -1,0 +1,218 @@
+//! `results.json`: the numbers of a run, for other programs. Its schema is `docs/reference/results.schema.json`.
+//!
+//! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
+
+use super::RunInfo;
+use crate::analysis::{CrackRecord, StaticResult, StepRecord, TipRecord, TipStatus};
+use crate::crack::End;
+use crate::math::Vector2;
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a run found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Results {
+    /// Version of riss that wrote the file.
+    pub riss: String,
+    /// Title of the case.
+    pub case: String,
+    /// Name of the method.
+    pub method: String,
+    /// How the run ended.
+    pub status: RunStatus,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of unknowns, multipliers included.
+    pub unknowns: usize,
+    /// Number of integration points.
+    pub integration_points: usize,
+    /// Time from start to end [s].
+    pub wall_time_s: Option<f64>,
+    /// Time of each stage [s].
+    pub stage_time_s: BTreeMap<String, f64>,
+    /// Greatest memory use.
+    pub peak_memory_bytes: Option<u64>,
+    /// Strain energy over the thickness [stress·length³].
+    pub strain_energy: Option<f64>,
+    /// Energy norm of the error over that of the solution, where an exact field is named.
+    pub energy_error: Option<f64>,
+    /// Relative residual of the linear system.
+    pub residual: Option<f64>,
+    /// All warnings, in order.
+    pub warnings: Vec<String>,
+    /// Names of the other files of this run, in the same folder.
+    pub files: Vec<String>,
+    /// Steps in order; a static run has one.
+    pub steps: Vec<StepResults>,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RunStatus {
+    /// As asked for.
+    Done,
+    /// Early; what was found until then is there.
+    Stopped,
+}
+
+/// One step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StepResults {
+    /// Number of the step, from 0.
+    pub step: usize,
+    /// Factor on the loads.
+    pub load_factor: Option<f64>,
+    /// Load cycles so far, in fatigue.
+    pub cycles: Option<f64>,
+    /// Every crack, in the order of the case.
+    pub cracks: Vec<CrackResults>,
+    /// Force of each supported part on the body over the thickness, by name of the part.
+    pub reactions: BTreeMap<String, Option<[f64; 2]>>,
+}
+
+/// A crack in one step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CrackResults {
+    /// Name of the crack.
+    pub name: String,
+    /// Vertices of its path.
+    pub path: Vec<[f64; 2]>,
+    /// Its tips.
+    pub tips: Vec<TipResults>,
+}
+
+/// A tip in one step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TipResults {
+    /// Which end of the path.
+    pub end: End,
+    /// Position of the tip.
+    pub position: [f64; 2],
+    /// Direction ahead, counterclockwise from the x axis [degree].
+    pub angle_deg: f64,
+    /// Mode I stress intensity factor [stress·√length], positive if the crack opens.
+    #[serde(rename = "K_I")]
+    pub k1: Option<f64>,
+    /// Mode II stress intensity factor [stress·√length], positive if the face to the left slides ahead.
+    #[serde(rename = "K_II")]
+    pub k2: Option<f64>,
+    /// Spread of both over the integration domains [stress·√length].
+    #[serde(rename = "K_uncertainty")]
+    pub k_uncertainty: Option<f64>,
+    /// J-integral [stress·length].
+    #[serde(rename = "J")]
+    pub j: Option<f64>,
+    /// T-stress [stress].
+    #[serde(rename = "T")]
+    pub t_stress: Option<f64>,
+    /// Configurational force, ahead and to the left [stress·length].
+    pub configurational_force: Option<[f64; 2]>,
+    /// Angle of the next increment against the direction ahead, counterclockwise [degree].
+    pub kink_angle_deg: Option<f64>,
+    /// What the tip does.
+    pub status: TipStatus,
+    /// Radii of the integration domains [length].
+    pub domain_radii: Vec<f64>,
+}
+
+impl Results {
+    /// The results of a static run; `files` is empty.
+    pub fn new(info: &RunInfo, result: &StaticResult) -> Self {
+        let mut stage_time_s = BTreeMap::new();
+        for (stage, time) in &info.stage_time_s {
+            *stage_time_s.entry(stage.clone()).or_insert(0.0) += time;
+        }
+        Self {
+            riss: env!("CARGO_PKG_VERSION").into(),
+            case: info.title.clone(),
+            method: info.method.clone(),
+            status: info.status,
+            nodes: result.n_nodes,
+            unknowns: result.n_unknowns,
+            integration_points: result.n_integration_points,
+            wall_time_s: finite(info.wall_time_s),
+            stage_time_s,
+            peak_memory_bytes: info.peak_memory_bytes,
+            strain_energy: finite(result.strain_energy),
+            energy_error: result.energy_error.and_then(finite),
+            residual: finite(result.residual),
+            warnings: result.warnings.iter().map(|w| w.message.clone()).collect(),
+            files: vec![],
+            steps: vec![StepResults::new(&result.step)],
+        }
+    }
+
+    /// As text, with a line break at the end.
+    pub fn to_json(&self) -> String {
+        // Strings, numbers and maps with text keys cannot fail.
+        serde_json::to_string_pretty(self).expect("results are plain values") + "\n"
+    }
+}
+
+impl StepResults {
+    fn new(step: &StepRecord) -> Self {
+        Self {
+            step: step.step,
+            load_factor: finite(step.load_factor),
+            cycles: step.cycles.and_then(finite),
+            cracks: step.cracks.iter().map(CrackResults::new).collect(),
+            reactions: step.reactions.iter().map(|(part, force)| (part.clone(), finite_pair(*force))).collect(),
+        }
+    }
+}
+
+impl CrackResults {
+    fn new(crack: &CrackRecord) -> Self {
+        Self {
+            name: crack.name.clone(),
+            path: crack.path.iter().map(|p| [p.x, p.y]).collect(),
+            tips: crack.tips.iter().map(TipResults::new).collect(),
+        }
+    }
+}
+
+impl TipResults {
+    pub(super) fn new(tip: &TipRecord) -> Self {
+        Self {
+            end: tip.end,
+            position: tip.position.into(),
+            angle_deg: tip.angle.to_degrees(),
+            k1: tip.k1.and_then(finite),
+            k2: tip.k2.and_then(finite),
+            k_uncertainty: tip.k_uncertainty.and_then(finite),
+            j: tip.j.and_then(finite),
+            t_stress: tip.t_stress.and_then(finite),
+            configurational_force: tip.configurational_force.and_then(finite_pair),
+            kink_angle_deg: tip.kink_angle.and_then(finite).map(f64::to_degrees),
+            status: tip.status,
+            domain_radii: tip.radii.clone(),
+        }
+    }
+}
+
+/// The content of `results.json` without the other files.
+pub fn results_json(info: &RunInfo, result: &StaticResult) -> String {
+    Results::new(info, result).to_json()
+}
+
+/// The JSON schema of `results.json`.
+pub fn results_schema() -> String {
+    let mut schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<Results>();
+    schema.insert("title".into(), "results.json of riss".into());
+    serde_json::to_string_pretty(&schema).expect("a schema is plain values") + "\n"
+}
+
+pub(super) fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn finite_pair(v: Vector2) -> Option<[f64; 2]> {
+    (v.x.is_finite() && v.y.is_finite()).then(|| v.into())
+}

@@ -1,0 +1,49 @@
+//! Files that appear whole or not at all.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Writes `content` to `path` by way of a temporary file in the same folder; an older file stays until the new one
+/// is complete.
+///
+/// # Errors
+/// What the system says, with the path; the temporary file is removed.
+pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
+    // The process in the name keeps two runs apart that write into the same folder.
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = path.with_file_name(format!(".{name}.{}.tmp", std::process::id()));
+    let written = write_synced(&temporary, content).and_then(|()| fs::rename(&temporary, path));
+    written.map_err(|e| {
+        // The first error is the one to report.
+        let _ = fs::remove_file(&temporary);
+        io::Error::new(e.kind(), format!("cannot write {}: {e}", path.display()))
+    })
+}
+
+fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
+    let mut file: File = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
+    file.write_all(content)?;
+    file.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replaces_whole_files_and_leaves_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        write_whole(&path, b"one").unwrap();
+        write_whole(&path, b"two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+        // A folder of that name cannot be replaced; the temporary file goes away.
+        fs::create_dir(dir.path().join("b")).unwrap();
+        fs::write(dir.path().join("b/keep"), b"").unwrap();
+        let error = write_whole(&dir.path().join("b"), b"x").unwrap_err();
+        assert!(error.to_string().starts_with("cannot write "), "{error}");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+    }
+}

@@ -1,0 +1,182 @@
+//! Symmetric sparse matrix of 2×2 blocks, one for each pair of nodes that meet in a cell.
+
+use super::discretization::NodeLists;
+use rayon::prelude::*;
+
+/// Blocks of the lower triangle, row by row: row `i` holds the columns `j <= i`, ascending.
+///
+/// A block is `[xx, xy, yx, yy]`, its first letter the component of the row.
+#[derive(Clone, Debug, Default)]
+pub struct BlockMatrix {
+    /// Start of each row in the two lists below.
+    pub row_starts: Vec<usize>,
+    /// Column of each block.
+    pub columns: Vec<u32>,
+    /// Blocks.
+    pub blocks: Vec<[f64; 4]>,
+}
+
+impl BlockMatrix {
+    /// The pattern in which all nodes of each list meet; all blocks zero.
+    pub fn of_pattern(n_nodes: usize, lists: &[&NodeLists]) -> Self {
+        // Lists that hold each node.
+        let mut starts = vec![0usize; n_nodes + 1];
+        for list in lists.iter().flat_map(|l| l.iter()) {
+            list.iter().for_each(|&i| starts[i as usize + 1] += 1);
+        }
+        for i in 0..n_nodes {
+            starts[i + 1] += starts[i];
+        }
+        let mut fill = starts.clone();
+        let mut holders = vec![0u32; starts[n_nodes]];
+        let flat: Vec<&[u32]> = lists.iter().flat_map(|l| l.iter()).collect();
+        for (k, list) in flat.iter().enumerate() {
+            for &i in *list {
+                holders[fill[i as usize]] = k as u32;
+                fill[i as usize] += 1;
+            }
+        }
+        let chunk = n_nodes.div_ceil(64).max(1);
+        let rows: Vec<(Vec<u32>, Vec<usize>)> = (0..n_nodes.div_ceil(chunk))
+            .into_par_iter()
+            .map(|c| {
+                let mut mark = vec![u32::MAX; n_nodes];
+                let (mut columns, mut ends) = (vec![], vec![]);
+                for i in c * chunk..((c + 1) * chunk).min(n_nodes) {
+                    let begin = columns.len();
+                    for &k in &holders[starts[i]..starts[i + 1]] {
+                        for &j in flat[k as usize].iter().take_while(|j| **j as usize <= i) {
+                            if std::mem::replace(&mut mark[j as usize], i as u32) != i as u32 {
+                                columns.push(j);
+                            }
+                        }
+                    }
+                    columns[begin..].sort_unstable();
+                    ends.push(columns.len());
+                }
+                (columns, ends)
+            })
+            .collect();
+        let mut result = Self { row_starts: vec![0], ..Self::default() };
+        for (columns, ends) in rows {
+            let offset = result.columns.len();
+            result.row_starts.extend(ends.iter().map(|e| e + offset));
+            result.columns.extend(columns);
+        }
+        result.blocks = vec![[0.0; 4]; result.columns.len()];
+        result
+    }
+
+    /// Number of nodes.
+    pub fn n_nodes(&self) -> usize {
+        self.row_starts.len() - 1
+    }
+
+    /// Adds local matrices in their order; rows go to threads by range, so that any number of threads gives the
+    /// same sums.
+    pub fn scatter(&mut self, locals: &[LocalMatrix]) {
+        let n = self.n_nodes();
+        let n_ranges = (4 * rayon::current_num_threads()).min(n.max(1));
+        let mut slices = vec![];
+        let mut rest = &mut self.blocks[..];
+        let mut begin = 0;
+        for r in 0..n_ranges {
+            let end = n * (r + 1) / n_ranges;
+            let (head, tail) = rest.split_at_mut(self.row_starts[end] - self.row_starts[begin]);
+            slices.push((begin, end, head));
+            rest = tail;
+            begin = end;
+        }
+        let (starts, columns) = (&self.row_starts, &self.columns);
+        slices.into_par_iter().for_each(|(begin, end, blocks)| {
+            for local in locals {
+                let first = local.nodes.partition_point(|&i| (i as usize) < begin);
+                let last = local.nodes.partition_point(|&i| (i as usize) < end);
+                for a in first..last {
+                    let i = local.nodes[a] as usize;
+                    let (row, base) = (&columns[starts[i]..starts[i + 1]], starts[i] - starts[begin]);
+                    let mut at = 0;
+                    for b in 0..=a {
+                        let j = local.nodes[b];
+                        while row[at] != j {
+                            at += 1;
+                        }
+                        let block = &mut blocks[base + at];
+                        for (sum, v) in block.iter_mut().zip(local.block(a, b)) {
+                            *sum += v;
+                        }
+                    }
+                }
+            }
+        });
+    }
+
+    /// `y = A x`, both node-major.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for i in 0..self.n_nodes() {
+            let (xi, mut yi) = ([x[2 * i], x[2 * i + 1]], [0.0; 2]);
+            for k in self.row_starts[i]..self.row_starts[i + 1] {
+                let (j, b) = (self.columns[k] as usize, self.blocks[k]);
+                yi[0] += b[0] * x[2 * j] + b[1] * x[2 * j + 1];
+                yi[1] += b[2] * x[2 * j] + b[3] * x[2 * j + 1];
+                if i != j {
+                    y[2 * j] += b[0] * xi[0] + b[2] * xi[1];
+                    y[2 * j + 1] += b[1] * xi[0] + b[3] * xi[1];
+                }
+            }
+            y[2 * i] += yi[0];
+            y[2 * i + 1] += yi[1];
+        }
+    }
+
+    /// Adds to a diagonal entry of a dof.
+    pub fn add_diagonal(&mut self, dof: usize, value: f64) {
+        let last = self.row_starts[dof / 2 + 1] - 1;
+        self.blocks[last][3 * (dof % 2)] += value;
+    }
+
+    /// Largest diagonal entry.
+    pub fn largest_diagonal(&self) -> f64 {
+        self.row_starts
+            .iter()
+            .skip(1)
+            .map(|&end| self.blocks[end - 1][0].max(self.blocks[end - 1][3]))
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Matrix and load of one cell or boundary element. A buffer.
+#[derive(Clone, Debug, Default)]
+pub struct LocalMatrix {
+    /// Nodes, ascending.
+    pub nodes: Vec<u32>,
+    /// Lower triangle of blocks, row by row.
+    pub blocks: Vec<[f64; 4]>,
+    /// Load vector, node-major.
+    pub load: Vec<f64>,
+}
+
+impl LocalMatrix {
+    /// Empties the buffer for new nodes.
+    pub fn reset(&mut self, nodes: &[u32]) {
+        self.nodes.clear();
+        self.nodes.extend_from_slice(nodes);
+        let n = nodes.len();
+        self.blocks.clear();
+        self.blocks.resize(n * (n + 1) / 2, [0.0; 4]);
+        self.load.clear();
+        self.load.resize(2 * n, 0.0);
+    }
+
+    #[inline]
+    fn block(&self, a: usize, b: usize) -> &[f64; 4] {
+        &self.blocks[a * (a + 1) / 2 + b]
+    }
+
+    /// The block of local nodes `a >= b`.
+    #[inline]
+    pub fn block_mut(&mut self, a: usize, b: usize) -> &mut [f64; 4] {
+        &mut self.blocks[a * (a + 1) / 2 + b]
+    }
+}

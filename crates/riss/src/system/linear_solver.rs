@@ -1,0 +1,307 @@
+//! Sparse symmetric factorization: the only file that sees `faer`'s solvers.
+
+use super::block_matrix::BlockMatrix;
+use super::constraints::ConstraintRow;
+use crate::error::{Error, Result};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use faer::traits::ComplexField;
+use faer::{Conj, Mat, Par, Side};
+
+/// From this many dofs a factor in single precision with conjugate gradients is faster and half the size.
+pub const MIXED_FROM: usize = 120_000;
+/// Conjugate gradients stop at this relative residual.
+const ITERATION_TARGET: f64 = 1e-12;
+/// Iterations after which the single precision factor counts as too poor.
+const MAX_ITERATIONS: usize = 60;
+
+/// A factored symmetric matrix.
+pub enum Factor {
+    /// Cholesky in double precision.
+    Double(Cholesky<f64>),
+    /// Cholesky in single precision, of the matrix scaled to unit diagonal.
+    Single {
+        /// The factor.
+        factor: Cholesky<f32>,
+        /// Inverse square roots of the diagonal.
+        scale: Vec<f64>,
+    },
+}
+
+/// A Cholesky factor with its symbolic part.
+pub struct Cholesky<T> {
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<T>,
+}
+
+impl Factor {
+    /// Factors in double precision.
+    ///
+    /// # Errors
+    /// [`Error::Factorization`] if the matrix is not positive definite.
+    pub fn double(matrix: &BlockMatrix, order: &[u32]) -> Result<Self> {
+        Ok(Self::Double(factor_cholesky(matrix, order, |v, _, _| v)?))
+    }
+
+    /// Factors in single precision.
+    ///
+    /// # Errors
+    /// [`Error::Factorization`] if the matrix is not positive definite in this precision.
+    pub fn single(matrix: &BlockMatrix, order: &[u32]) -> Result<Self> {
+        let scale: Vec<f64> = (0..2 * matrix.n_nodes())
+            .map(|dof| matrix.blocks[matrix.row_starts[dof / 2 + 1] - 1][3 * (dof % 2)].sqrt().recip())
+            .collect();
+        let factor = factor_cholesky(matrix, order, |v, i, j| (v * scale[i] * scale[j]) as f32)?;
+        Ok(Self::Single { factor, scale })
+    }
+
+    /// Solves `A x = b` to full precision.
+    pub fn solve(&self, matrix: &BlockMatrix, right: &[f64]) -> Result<Vec<f64>> {
+        match self {
+            Self::Double(factor) => {
+                let mut x = right.to_vec();
+                factor.solve_in_place(&mut x);
+                // One step of refinement costs a multiplication and keeps all digits.
+                let mut r = vec![0.0; x.len()];
+                matrix.multiply(&x, &mut r);
+                r.iter_mut().zip(right).for_each(|(r, b)| *r = b - *r);
+                factor.solve_in_place(&mut r);
+                x.iter_mut().zip(&r).for_each(|(x, d)| *x += d);
+                Ok(x)
+            }
+            Self::Single { factor, scale } => conjugate_gradients(matrix, right, |r| {
+                let largest = r.iter().fold(0.0f64, |m, v| m.max(v.abs())).max(f64::MIN_POSITIVE);
+                let mut z: Vec<f32> = r.iter().zip(scale).map(|(v, s)| (v * s / largest) as f32).collect();
+                factor.solve_in_place(&mut z);
+                z.iter().zip(scale).map(|(v, s)| *v as f64 * s * largest).collect()
+            }),
+        }
+    }
+}
+
+impl<T: ComplexField> Cholesky<T> {
+    fn solve_in_place(&self, x: &mut [T]) {
+        let n = x.len();
+        let mut right = Mat::from_fn(n, 1, |i, _| x[i].clone());
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<T>(1, Par::Seq));
+        let factor = faer::sparse::linalg::cholesky::LltRef::new(&self.symbolic, &self.values);
+        factor.solve_in_place_with_conj(Conj::No, right.as_mut(), Par::Seq, MemStack::new(&mut memory));
+        for (i, v) in x.iter_mut().enumerate() {
+            *v = right[(i, 0)].clone();
+        }
+    }
+}
+
+/// Expands blocks to scalars: row `i` of the lower triangle is column `i` of the upper one.
+fn upper_columns<T>(
+    matrix: &BlockMatrix,
+    convert: impl Fn(f64, usize, usize) -> T,
+) -> (Vec<usize>, Vec<usize>, Vec<T>) {
+    let n = matrix.n_nodes();
+    let n_values = 4 * matrix.columns.len() - n;
+    let (mut starts, mut rows, mut values) =
+        (Vec::with_capacity(2 * n + 1), Vec::with_capacity(n_values), Vec::with_capacity(n_values));
+    starts.push(0);
+    for i in 0..n {
+        for c in 0..2 {
+            let column = 2 * i + c;
+            for k in matrix.row_starts[i]..matrix.row_starts[i + 1] {
+                let j = matrix.columns[k] as usize;
+                for d in 0..if i == j { c + 1 } else { 2 } {
+                    rows.push(2 * j + d);
+                    values.push(convert(matrix.blocks[k][2 * c + d], column, 2 * j + d));
+                }
+            }
+            starts.push(rows.len());
+        }
+    }
+    (starts, rows, values)
+}
+
+fn symbolic_factor<T>(
+    matrix: &SparseColMat<usize, T>,
+    order: &[usize],
+    inverse: &[usize],
+) -> Result<SymbolicCholesky<usize>> {
+    let n = order.len();
+    let parameters = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..Default::default()
+    };
+    let ordering = SymmetricOrdering::Custom(PermRef::new_checked(order, inverse, n));
+    factorize_symbolic_cholesky(matrix.symbolic(), Side::Upper, ordering, parameters)
+        .map_err(|e| Error::Factorization { reason: format!("{e:?}") })
+}
+
+fn invert(order: &[usize]) -> Vec<usize> {
+    let mut inverse = vec![0; order.len()];
+    for (position, &dof) in order.iter().enumerate() {
+        inverse[dof] = position;
+    }
+    inverse
+}
+
+fn factor_cholesky<T: ComplexField + faer::traits::RealField>(
+    matrix: &BlockMatrix,
+    order: &[u32],
+    convert: impl Fn(f64, usize, usize) -> T,
+) -> Result<Cholesky<T>> {
+    let n = 2 * matrix.n_nodes();
+    let (starts, rows, values) = upper_columns(matrix, convert);
+    let sparse = SparseColMat::new(SymbolicSparseColMat::new_checked(n, n, starts, None, rows), values);
+    let order: Vec<usize> = order.iter().flat_map(|&i| [2 * i as usize, 2 * i as usize + 1]).collect();
+    let symbolic = symbolic_factor(&sparse, &order, &invert(&order))?;
+    let mut values = vec![T::zero_impl(); symbolic.len_val()];
+    let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, Default::default()));
+    symbolic
+        .factorize_numeric_llt(
+            &mut values,
+            sparse.as_ref(),
+            Side::Upper,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        )
+        .map_err(|e| Error::Factorization { reason: format!("it is not positive definite ({e:?})") })?;
+    Ok(Cholesky { symbolic, values })
+}
+
+fn conjugate_gradients(
+    matrix: &BlockMatrix,
+    right: &[f64],
+    precondition: impl Fn(&[f64]) -> Vec<f64>,
+) -> Result<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let size = dot(right, right).sqrt();
+    let mut x = vec![0.0; right.len()];
+    if size == 0.0 {
+        return Ok(x);
+    }
+    let mut r = right.to_vec();
+    let mut z = precondition(&r);
+    let mut p = z.clone();
+    let mut q = vec![0.0; right.len()];
+    let mut rz = dot(&r, &z);
+    for _ in 0..MAX_ITERATIONS {
+        matrix.multiply(&p, &mut q);
+        let alpha = rz / dot(&p, &q);
+        for i in 0..x.len() {
+            x[i] += alpha * p[i];
+            r[i] -= alpha * q[i];
+        }
+        let residual = dot(&r, &r).sqrt() / size;
+        if residual <= ITERATION_TARGET {
+            return Ok(x);
+        }
+        if !residual.is_finite() {
+            break;
+        }
+        z = precondition(&r);
+        let next = dot(&r, &z);
+        for i in 0..p.len() {
+            p[i] = z[i] + next / rz * p[i];
+        }
+        rz = next;
+    }
+    Err(Error::Residual { residual: dot(&r, &r).sqrt() / size, allowed: ITERATION_TARGET })
+}
+
+/// Solves the saddle point problem of a matrix with constraint rows, which may be indefinite, by LBLᵀ with pivoting
+/// inside supernodes. Returns dofs and multipliers.
+///
+/// Each multiplier is eliminated right after the last of its nodes, so that its pivot is filled by then.
+pub fn solve_with_multipliers(
+    matrix: &BlockMatrix,
+    order: &[u32],
+    rows: &[ConstraintRow],
+    load: &[f64],
+) -> Result<(Vec<f64>, Vec<f64>)> {
+    let (n, m) = (2 * matrix.n_nodes(), rows.len());
+    // The multipliers are scaled to the stiffness, so that pivots compare.
+    let scale = matrix.largest_diagonal();
+    let (mut starts, mut indices, mut values) = upper_columns(matrix, |v, _, _| v);
+    for (k, row) in rows.iter().enumerate() {
+        let largest = row.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()));
+        for &(dof, v) in &row.entries {
+            indices.push(dof);
+            values.push(v * scale / largest);
+        }
+        indices.push(n + k);
+        values.push(0.0);
+        starts.push(indices.len());
+    }
+    let size = n + m;
+    let sparse = SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, starts, None, indices), values);
+    let mut position = vec![0; matrix.n_nodes()];
+    order.iter().enumerate().for_each(|(p, &i)| position[i as usize] = p);
+    let mut after: Vec<Vec<usize>> = vec![vec![]; matrix.n_nodes()];
+    for (k, row) in rows.iter().enumerate() {
+        let last = row.entries.iter().map(|e| position[e.0 / 2]).max().unwrap_or(0);
+        after[last].push(n + k);
+    }
+    let mut full = Vec::with_capacity(size);
+    for (p, &i) in order.iter().enumerate() {
+        full.extend([2 * i as usize, 2 * i as usize + 1]);
+        full.extend(&after[p]);
+    }
+    let symbolic = symbolic_factor(&sparse, &full, &invert(&full))?;
+    let mut factor = vec![0.0; symbolic.len_val()];
+    let (mut subdiagonal, mut forward, mut backward) = (vec![0.0; size], vec![0usize; size], vec![0usize; size]);
+    let mut memory =
+        MemBuffer::new(symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default()));
+    let lblt = symbolic.factorize_numeric_intranode_lblt(
+        &mut factor,
+        &mut subdiagonal,
+        &mut forward,
+        &mut backward,
+        sparse.as_ref(),
+        Side::Upper,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    );
+    let right: Vec<f64> = load
+        .iter()
+        .copied()
+        .chain(rows.iter().map(|r| r.value * scale / r.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()))))
+        .collect();
+    let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+    let mut x = vec![0.0; size];
+    // Refinement: pivoting inside supernodes may cost some digits.
+    for _ in 0..3 {
+        let product = multiply_upper(&sparse, &x);
+        let mut step = Mat::from_fn(size, 1, |i, _| right[i] - product[i]);
+        lblt.solve_in_place_with_conj(Conj::No, step.as_mut(), Par::Seq, MemStack::new(&mut memory));
+        (0..size).for_each(|i| x[i] += step[(i, 0)]);
+    }
+    if x.iter().any(|v| !v.is_finite()) {
+        return Err(Error::Factorization { reason: "a constraint is redundant or contradicts another".into() });
+    }
+    let multipliers =
+        rows.iter().zip(&x[n..]).map(|(r, v)| v * scale / r.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs())));
+    let multipliers = multipliers.collect();
+    x.truncate(n);
+    Ok((x, multipliers))
+}
+
+fn multiply_upper(matrix: &SparseColMat<usize, f64>, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; x.len()];
+    let (starts, rows, values) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx(), matrix.val());
+    for j in 0..x.len() {
+        for k in starts[j]..starts[j + 1] {
+            let i = rows[k];
+            y[i] += values[k] * x[j];
+            if i != j {
+                y[j] += values[k] * x[i];
+            }
+        }
+    }
+    y
+}

@@ -1,0 +1,5 @@
+//! Files of a run, read back.
+
+mod results;
+mod sample;
+mod vtk;

@@ -1,0 +1,116 @@
+//! A result made from an exact field: a square with an edge crack up to its middle.
+
+use riss::analysis::{
+    CrackFaces, CrackRecord, Fields, NodeRecord, StaticResult, StepRecord, TipRecord, TipStatus, Warning,
+};
+use riss::crack::End;
+use riss::exact::{CrackTipField, ExactField};
+use riss::material::{Elasticity, PlaneState};
+use riss::math::Vector2;
+use riss::output::{RunInfo, RunStatus};
+
+pub const MATERIAL: Elasticity = Elasticity { young: 100.0, poisson: 0.3, plane: PlaneState::Strain };
+const FIELD: CrackTipField = CrackTipField { tip: Vector2::new(0.0, 0.0), angle: 0.0, k1: 3.0, k2: 1.0, t_stress: 0.5 };
+/// Offset to a side of the crack.
+const SIDE: f64 = 1e-12;
+
+pub fn info() -> RunInfo {
+    RunInfo {
+        title: "square, \"edge\" crack".into(),
+        method: "efg".into(),
+        status: RunStatus::Done,
+        wall_time_s: 1.5,
+        stage_time_s: vec![("nodes".into(), 0.25), ("solve".into(), 0.5), ("solve".into(), 0.25)],
+        peak_memory_bytes: None,
+    }
+}
+
+/// The square [-1, 1]² in `2 n * n` columns and rows of cells, two triangles each.
+pub fn result(n: usize) -> StaticResult {
+    let fields = fields(n);
+    StaticResult {
+        step: StepRecord {
+            step: 0,
+            load_factor: 1.0,
+            cycles: None,
+            cracks: vec![crack()],
+            reactions: vec![("bottom".into(), Vector2::new(0.0, -2.0))],
+        },
+        n_nodes: 4,
+        n_unknowns: 11,
+        n_integration_points: 2,
+        strain_energy: 0.125,
+        energy_error: Some(f64::NAN),
+        residual: 1e-14,
+        nodes: fields
+            .positions
+            .iter()
+            .zip(&fields.displacement)
+            .map(|(&position, &parameters)| NodeRecord { position, support_radius: 0.5, parameters })
+            .collect(),
+        integration_points: vec![(Vector2::new(0.5, 0.25), 0.75), (Vector2::new(-0.5, 0.25), 0.5)],
+        fields,
+        warnings: vec![Warning { message: "few nodes".into() }],
+    }
+}
+
+fn crack() -> CrackRecord {
+    CrackRecord {
+        name: "crack-1".into(),
+        path: vec![Vector2::new(-1.0, 0.0), Vector2::zeros()],
+        tips: vec![TipRecord {
+            end: End::End,
+            position: FIELD.tip,
+            angle: 0.0,
+            k1: Some(FIELD.k1),
+            k2: Some(f64::INFINITY),
+            k_uncertainty: Some(0.01),
+            j: Some(0.125),
+            t_stress: None,
+            configurational_force: Some(Vector2::new(0.125, f64::NAN)),
+            kink_angle: Some(-std::f64::consts::FRAC_PI_4),
+            status: TipStatus::Stationary,
+            radii: vec![0.25, 0.5],
+        }],
+    }
+}
+
+fn fields(n: usize) -> Fields {
+    let mut fields = Fields::default();
+    for upper in [false, true] {
+        let first = fields.positions.len();
+        for row in 0..=n {
+            for column in 0..=2 * n {
+                let x = column as f64 / n as f64 - 1.0;
+                let y = if upper { row as f64 / n as f64 } else { row as f64 / n as f64 - 1.0 };
+                push_vertex(&mut fields, Vector2::new(x, y), if upper { SIDE } else { -SIDE });
+            }
+        }
+        let at = |column: usize, row: usize| (first + row * (2 * n + 1) + column) as u32;
+        for row in 0..n {
+            for c in 0..2 * n {
+                fields.triangles.push([at(c, row), at(c + 1, row), at(c + 1, row + 1)]);
+                fields.triangles.push([at(c, row), at(c + 1, row + 1), at(c, row + 1)]);
+            }
+        }
+    }
+    let positions: Vec<_> = (0..=8).map(|k| Vector2::new(k as f64 / 8.0 - 1.0, 0.0)).collect();
+    let face =
+        |side| positions.iter().map(|p| FIELD.displacement(&MATERIAL, p + Vector2::new(0.0, side))).collect::<Vec<_>>();
+    fields.crack_faces.push(CrackFaces { left: face(SIDE), right: face(-SIDE), positions });
+    fields
+}
+
+/// The vertex itself is exact; the field is taken a little to its side of the crack.
+fn push_vertex(fields: &mut Fields, position: Vector2, side: f64) {
+    let at = position + Vector2::new(0.0, if position.y == 0.0 { side } else { 0.0 });
+    let stress = FIELD.stress(&MATERIAL, at);
+    fields.positions.push(position);
+    fields.displacement.push(FIELD.displacement(&MATERIAL, at));
+    fields.stress.push(stress);
+    fields.strain.push(MATERIAL.strain(&stress));
+    fields.out_of_plane_stress.push(MATERIAL.out_of_plane_stress(&stress));
+    fields.out_of_plane_strain.push(MATERIAL.out_of_plane_strain(&stress));
+    fields.von_mises.push(MATERIAL.von_mises(&stress));
+    fields.error_indicator.push(position.norm());
+}
