@@ -46,7 +46,7 @@ pub fn principal_stresses(stress: &Matrix2) -> (f64, f64, Vector2) {
     (middle + radius, middle - radius, direction(0.5 * shear.atan2(difference)))
 }
 
-fn check(fields: &Fields) -> io::Result<()> {
+pub(super) fn check(fields: &Fields) -> io::Result<()> {
     let n = fields.positions.len();
     for (name, length) in [
         ("displacement", fields.displacement.len()),

@@ -1,14 +1,21 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`results`] (the contract), [`history`], [`fields`]
-//! with `vtk` below it, [`whole_file`].
+//! with `vtk` below it, [`model_picture`] and [`field_picture`] with `svg` and `contours` below them, [`whole_file`].
 
+mod color_map;
+mod contours;
+pub mod field_picture;
 pub mod fields;
 pub mod history;
+pub mod model_picture;
 pub mod results;
+mod svg;
 mod vtk;
 pub mod whole_file;
 
+pub use field_picture::{FieldQuantity, write_field_picture};
+pub use model_picture::write_model_picture;
 pub use results::{Results, RunStatus, results_json, results_schema};
 
 use crate::analysis::StaticResult;
@@ -41,7 +48,7 @@ pub struct RunInfo {
 
 /// Which files to write beside `results.json` and `history.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[serde(default, deny_unknown_fields)]
 pub struct OutputOptions {
     /// Displacement, stress and strain over the body, and the crack faces, for ParaView.
     pub fields: bool,

@@ -25,7 +25,7 @@ pub fn info() -> RunInfo {
     }
 }
 
-/// The square [-1, 1]² in `2 n * n` columns and rows of cells, two triangles each.
+/// The square [-1, 1]² in `2 n` columns and rows of cells, two triangles each.
 pub fn result(n: usize) -> StaticResult {
     let fields = fields(n);
     StaticResult {
@@ -77,21 +77,26 @@ fn crack() -> CrackRecord {
 
 fn fields(n: usize) -> Fields {
     let mut fields = Fields::default();
-    for upper in [false, true] {
-        let first = fields.positions.len();
-        for row in 0..=n {
-            for column in 0..=2 * n {
-                let x = column as f64 / n as f64 - 1.0;
-                let y = if upper { row as f64 / n as f64 } else { row as f64 / n as f64 - 1.0 };
-                push_vertex(&mut fields, Vector2::new(x, y), if upper { SIDE } else { -SIDE });
-            }
+    let width = 2 * n + 1;
+    for row in 0..=2 * n {
+        for column in 0..width {
+            let at = |k: usize| k as f64 / n as f64 - 1.0;
+            push_vertex(&mut fields, n, Vector2::new(at(column), at(row)), -SIDE);
         }
-        let at = |column: usize, row: usize| (first + row * (2 * n + 1) + column) as u32;
-        for row in 0..n {
-            for c in 0..2 * n {
-                fields.triangles.push([at(c, row), at(c + 1, row), at(c + 1, row + 1)]);
-                fields.triangles.push([at(c, row), at(c + 1, row + 1), at(c, row + 1)]);
-            }
+    }
+    // The upper face has vertices of its own.
+    let upper = fields.positions.len();
+    for column in 0..n {
+        let position = fields.positions[n * width + column];
+        push_vertex(&mut fields, n, position, SIDE);
+    }
+    for row in 0..2 * n {
+        for c in 0..2 * n {
+            let below = if row == n && c < n { upper } else { row * width };
+            let below_right = if row == n && c + 1 < n { upper } else { row * width };
+            let [a, b] = [below + c, below_right + c + 1].map(|v| v as u32);
+            let [d, e] = [(row + 1) * width + c, (row + 1) * width + c + 1].map(|v| v as u32);
+            fields.triangles.extend([[a, b, e], [a, e, d]]);
         }
     }
     let positions: Vec<_> = (0..=8).map(|k| Vector2::new(k as f64 / 8.0 - 1.0, 0.0)).collect();
@@ -101,9 +106,13 @@ fn fields(n: usize) -> Fields {
     fields
 }
 
-/// The vertex itself is exact; the field is taken a little to its side of the crack.
-fn push_vertex(fields: &mut Fields, position: Vector2, side: f64) {
-    let at = position + Vector2::new(0.0, if position.y == 0.0 { side } else { 0.0 });
+/// The vertex itself is exact; the field is taken a little to its side of the crack, and ahead of the tip.
+fn push_vertex(fields: &mut Fields, n: usize, position: Vector2, side: f64) {
+    let mut at = position;
+    if position.y == 0.0 {
+        at.y = side;
+        at.x += if position.x == 0.0 { 0.25 / n as f64 } else { 0.0 };
+    }
     let stress = FIELD.stress(&MATERIAL, at);
     fields.positions.push(position);
     fields.displacement.push(FIELD.displacement(&MATERIAL, at));
