@@ -33,9 +33,51 @@ fn help() {
     assert_eq!(riss(&root(), &["run", "cases/shear-edge-crack/case.toml", "--threads", "0"]).status.code(), Some(2));
 }
 
+/// The reference case, as an absolute path.
+fn shear_case() -> String {
+    root().join("cases/shear-edge-crack/case.toml").canonicalize().expect("there").display().to_string()
+}
+
+/// Numbers that follow from node placement, not from the program around it.
+const NUMBERS: [(&str, &str); 2] =
+    [(r"nodes    \d+", "nodes    [n]"), (r"cells    \d+ with \d+", "cells    [n] with [n]")];
+
 #[test]
-fn check_says_what_a_case_holds() {
-    insta::assert_snapshot!("check", stdout(&root(), &["check", "cases/shear-edge-crack/case.toml"]));
+fn check_says_what_a_case_holds_and_draws_it() {
+    let folder = scratch("check");
+    let text = stdout(&folder, &["check", &shear_case()]);
+    insta::with_settings!({ filters => NUMBERS }, { insta::assert_snapshot!("check", text) });
+    assert!(folder.join("shear-edge-crack.riss-out/model.svg").exists());
+}
+
+#[test]
+fn run_prints_a_table_and_writes_files() {
+    let folder = scratch("run");
+    let text = stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet"]);
+    let row = text.lines().find(|l| l.starts_with("crack-1")).expect("a row of the table");
+    let k1: f64 = row.split_whitespace().nth(4).expect("K_I").parse().expect("a number");
+    // Wilson (1969): 34.0; the case's own test is sharper.
+    assert!((k1 - 34.0).abs() < 0.5, "{text}");
+    assert!(text.contains("wrote out/results.json") && folder.join("out/results.json").exists());
+}
+
+#[test]
+fn run_prints_json_alone() {
+    let output =
+        riss(&scratch("json"), &["run", &shear_case(), "--json", "--set", "output.fields=false", "--threads", "2"]);
+    let results: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(results["steps"][0]["cracks"][0]["tips"][0]["K_I"].is_number());
+    let stages = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(stages.starts_with("nodes\ndiscretization\n"), "{stages}");
+}
+
+#[test]
+fn a_failed_analysis_has_its_own_exit_code() {
+    // Held along y only: free to slide along x.
+    let output =
+        riss(&scratch("failed"), &["run", &shear_case(), "--quiet", "--set", "support=[{ on = 'bottom', y = 0 }]"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).starts_with("error: "));
 }
 
 #[test]

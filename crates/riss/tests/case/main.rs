@@ -68,3 +68,28 @@ fn the_schema_names_every_section() {
         assert!(properties[key]["description"].is_string(), "{key}");
     }
 }
+
+/// Reads a case that lies in the folder of test data.
+fn read_beside_data(template: &Template) -> Case {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/case.toml");
+    Case::parse(&template.text(), &path, &[]).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+#[test]
+fn bodies_come_from_meshes_beside_the_case() {
+    let mut template = template();
+    template.geometry = "[geometry.gmsh]\nfile = 'two-holes-41-ascii.msh'\n".into();
+    template.geometry += "[[part]]\nname = 'seat'\non = 'top'\nfrom = [5, 10]\nto = [7, 10]\n";
+    let domain = read_beside_data(&template).model.domain;
+    assert_eq!(domain.loops.len(), 3);
+    assert!(domain.parts.iter().any(|p| p.name == "hole-1") && domain.parts.iter().any(|p| p.name == "seat"));
+}
+
+#[test]
+fn nodes_come_from_files_beside_the_case() {
+    let mut template = template();
+    template.rest += "[nodes.layout.file]\npath = 'nodes.csv'\n";
+    let case = read_beside_data(&template);
+    let riss::nodes::settings::Layout::Listed(listed) = &case.settings.nodes.layout else { panic!("listed") };
+    assert_eq!((listed.positions.as_slice(), case.notes.len()), ([[1.0, 1.0], [2.5, 3.0]].as_slice(), 1));
+}
