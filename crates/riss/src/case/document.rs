@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
+/// Tables with one key, which names a kind: an override with another kind replaces it.
+const CHOICES: [&str; 5] = ["geometry", "exact", "constraints", "nodes.layout", "integration.scheme"];
+
 /// A value with its place.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
@@ -137,6 +140,19 @@ impl Document {
         self.root.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()
     }
 
+    /// Removes the kinds that give way to the one in `path`.
+    fn make_room(&mut self, path: &[&str]) {
+        for choice in CHOICES {
+            let n = choice.split('.').count();
+            if path.len() > n
+                && path[..n].join(".") == choice
+                && let Some(table) = kinds(&mut self.root, choice)
+            {
+                table.retain(|name, _| name == path[n]);
+            }
+        }
+    }
+
     fn set(&mut self, index: usize, text: &str) -> Result<(), Box<Problem>> {
         let bad = |message: &str| Box::new(Problem::new("", message));
         let Some((key, value)) = text.split_once('=') else {
@@ -160,8 +176,21 @@ impl Document {
             },
         };
         place_all(&mut node, &(offset..text.len()), &(0..offset - 1));
+        self.make_room(&path);
         insert(&mut self.root, &path, node).map_err(|message| bad(&message))
     }
+}
+
+/// The table of one of the [`CHOICES`], if there is one.
+fn kinds<'d>(table: &'d mut BTreeMap<String, Node>, choice: &str) -> Option<&'d mut BTreeMap<String, Node>> {
+    let mut table = table;
+    for step in choice.split('.') {
+        match &mut table.get_mut(step)?.content {
+            Content::Table(inner) => table = inner,
+            _ => return None,
+        }
+    }
+    Some(table)
 }
 
 /// The steps of a key path: names and list indices.
@@ -285,6 +314,9 @@ mod tests {
         assert!(matches!(document.find("constraints.penalty.factor").unwrap().content, Content::Integer(5)));
         assert!(matches!(document.find("crack[0].path[1][0]").unwrap().content, Content::Integer(4)));
         assert!(matches!(&document.find("title").unwrap().content, Content::Text(s) if s == "My plate"));
+        let (document, _) = parse("[nodes.layout.structured]\nnx = 2\n", &["nodes.layout.graded.spacing=1"]);
+        assert!(matches!(document.find("nodes.layout.graded.spacing").unwrap().content, Content::Integer(1)));
+        assert!(matches!(&document.find("nodes.layout").unwrap().content, Content::Table(t) if t.len() == 1));
         let (_, problems) = parse(text, &["young", "crack.x.path=1", "=1", "crack[7].path=1"]);
         assert_eq!(problems.len(), 4);
     }

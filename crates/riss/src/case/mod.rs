@@ -24,6 +24,19 @@ const MAX_BYTES: u64 = 10_000_000;
 const MAX_MESH_BYTES: u64 = 500_000_000;
 
 /// A valid case.
+///
+/// ```
+/// let text = "
+/// rigid_motion = 'mean-is-zero'
+/// material = { young = 210e3, poisson = 0.3, plane = 'strain' }
+/// geometry.rectangle = { lower = [0, 0], upper = [100, 200] }
+/// crack = [{ path = [[0, 100], [30, 100]] }]
+/// remote_stress.yy = 80
+/// ";
+/// let case = riss::case::Case::parse(text, "case.toml".as_ref(), &[])?;
+/// assert_eq!(case.model.cracks[0].length(), 30.0);
+/// # Ok::<(), riss::case::CaseErrors>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The problem.
