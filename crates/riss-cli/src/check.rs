@@ -1,11 +1,11 @@
 //! `riss check`.
 
 use crate::table::number;
-use crate::{BAD_CASE, DONE, diagnostics};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
 use clap::Args;
+use riss::analysis::{Silent, discretize};
 use riss::case::Case;
 use riss::model::Model;
-use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Arguments of `riss check`.
@@ -16,42 +16,69 @@ pub struct CheckArguments {
     /// Overrides a key of the case, such as material.young=70e9; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<String>,
+    /// Folder for the picture of the model [default: NAME.riss-out in the current folder]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
-/// Checks a case and says what it holds; returns the exit code.
+/// Checks a case, says what it holds and draws it; returns the exit code.
 pub fn check(arguments: &CheckArguments) -> u8 {
-    match Case::read(&arguments.case, &arguments.overrides) {
-        Ok(case) => {
-            diagnostics::report_notes(&case);
-            crate::print(&describe(&case.model));
-            DONE
-        }
+    let case = match Case::read(&arguments.case, &arguments.overrides) {
+        Ok(case) => case,
         Err(errors) => {
             diagnostics::report_errors(&errors);
-            BAD_CASE
+            return BAD_CASE;
+        }
+    };
+    diagnostics::report_notes(&case);
+    crate::print(&describe(&case.model));
+    let discrete = match discretize(&case.model, &case.settings, &mut Silent) {
+        Ok(discrete) => discrete,
+        Err(error) => {
+            eprintln!("error: {error}");
+            return STOPPED;
+        }
+    };
+    let n_points = discrete.cells.points.len();
+    crate::print(&line("nodes", discrete.approximation.nodes().len().to_string()));
+    crate::print(&line("cells", format!("{} with {n_points} integration points", discrete.cells.len())));
+    let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
+    match results::write_picture(&dir, &case.model, &discrete) {
+        Ok(path) => {
+            crate::print(&line("picture", path.display().to_string()));
+            DONE
+        }
+        Err(e) => {
+            eprintln!("error: cannot write a picture to {}: {e}", dir.display());
+            STOPPED
         }
     }
 }
 
+/// A line of the description.
+fn line(name: &str, value: String) -> String {
+    format!("{name:<9}{value}\n")
+}
+
 fn describe(model: &Model) -> String {
     let mut text = String::new();
-    let mut line = |name: &str, value: String| writeln!(text, "{name:<9}{value}").expect("a string takes all");
-    line("case", model.title.clone());
+    text += &line("case", model.title.clone());
     let domain = &model.domain;
     let holes = domain.loops.len() - 1;
-    line("body", format!("area {}, {} edges, {holes} holes", number(domain.area()), domain.edges.len()));
+    text += &line("body", format!("area {}, {} edges, {holes} holes", number(domain.area()), domain.edges.len()));
     let parts: Vec<&str> = domain.parts.iter().map(|p| p.name.as_str()).collect();
-    line("parts", parts.join(", "));
+    text += &line("parts", parts.join(", "));
     for crack in &model.cracks {
         let tips: Vec<String> = (crack.tip_ends())
             .map(|end| crack.frame(end).position)
             .map(|p| format!("({}, {})", number(p.x), number(p.y)))
             .collect();
-        line("crack", format!("{}: length {}, tips at {}", crack.name, number(crack.length()), tips.join(" and ")));
+        let tips = if tips.is_empty() { "no tips".into() } else { format!("tips at {}", tips.join(" and ")) };
+        text += &line("crack", format!("{}: length {}, {tips}", crack.name, number(crack.length())));
     }
     let loads = model.loads.len() + model.point_loads.len() + usize::from(model.body_force.is_some());
     let supports = model.supports.len() + model.point_supports.len() + model.springs.len();
-    line("loads", loads.to_string());
-    line("supports", supports.to_string());
+    text += &line("loads", loads.to_string());
+    text += &line("supports", supports.to_string());
     text
 }

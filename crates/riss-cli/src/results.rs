@@ -2,7 +2,9 @@
 
 use riss::analysis::StaticResult;
 use riss::case::Case;
-use riss::output::{OutputOptions, RunInfo, RunStatus, results_json, write_results};
+use riss::model::Model;
+use riss::output::{OutputOptions, RunInfo, RunStatus, results_json, write_model_picture, write_results};
+use riss::system::Discretization;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +39,24 @@ pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) ->
     write_results(dir, &run.info(case), result, &options)
 }
 
+/// Draws the body with its nodes and cells into `dir`; returns the path.
+pub fn write_picture(dir: &Path, model: &Model, discrete: &Discretization) -> io::Result<PathBuf> {
+    std::fs::create_dir_all(dir)?;
+    let path = dir.join("model.svg");
+    write_model_picture(&path, model, &discrete.approximation.nodes().positions, &discrete.cells.corners)?;
+    Ok(path)
+}
+
 /// The results as JSON.
 pub fn json(case: &Case, run: &RunRecord, result: &StaticResult) -> String {
     results_json(&run.info(case), result)
+}
+
+/// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.
+pub fn default_folder(case: &Path) -> PathBuf {
+    let path = case.canonicalize().unwrap_or_else(|_| case.to_path_buf());
+    let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
+    let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    let name = if stem == "case" { folder.unwrap_or(stem) } else { stem };
+    PathBuf::from(format!("{name}.riss-out"))
 }

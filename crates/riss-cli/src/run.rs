@@ -7,7 +7,7 @@ use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
 use riss::case::Case;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `riss run`.
 #[derive(Args)]
@@ -43,11 +43,11 @@ pub fn run(arguments: &RunArguments) -> u8 {
     if !arguments.quiet {
         diagnostics::report_notes(&case);
     }
-    if let Some(n) = arguments.threads {
-        if let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global() {
-            eprintln!("error: cannot start {n} threads: {e}");
-            return BAD_CASE;
-        }
+    if let Some(n) = arguments.threads
+        && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global()
+    {
+        eprintln!("error: cannot start {n} threads: {e}");
+        return BAD_CASE;
     }
     let mut progress = Progress::new(arguments.quiet);
     let outcome = linear_static(&case.model, &case.settings, &mut progress);
@@ -67,7 +67,7 @@ pub fn run(arguments: &RunArguments) -> u8 {
 
 /// Writes files and prints the results.
 fn deliver(arguments: &RunArguments, case: &Case, run: &RunRecord, result: &StaticResult) -> u8 {
-    let dir = arguments.out.clone().unwrap_or_else(|| default_out(&arguments.case));
+    let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
     let written = results::write(&dir, case, run, result);
     if arguments.json {
         crate::print(&results::json(case, run, result));
@@ -88,13 +88,4 @@ fn deliver(arguments: &RunArguments, case: &Case, run: &RunRecord, result: &Stat
             STOPPED
         }
     }
-}
-
-/// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.
-fn default_out(case: &Path) -> PathBuf {
-    let path = case.canonicalize().unwrap_or_else(|_| case.to_path_buf());
-    let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
-    let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    let name = if stem == "case" { folder.unwrap_or(stem) } else { stem };
-    PathBuf::from(format!("{name}.riss-out"))
 }

@@ -3,7 +3,7 @@
 //! Reports everything that is wrong, where a deserializer would stop at the first mistake.
 
 use super::document::{Content, Document, Node};
-use super::problem::Problem;
+use super::problem::{MAX_PROBLEMS, Problem};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,10 +24,12 @@ pub(super) fn check(document: &Document, schema: &Value, problems: &mut Vec<Prob
     }
     for key in strings(&schema["required"]) {
         if !document.root.contains_key(key) {
+            faulty.insert(key.into());
+        }
+        if !document.root.contains_key(key) && !checker.is_suggested(key, 0) {
             let mut problem = Problem::new(key, "missing");
             problem.suggest(checker.about(&properties[key]));
             checker.problems.push(problem);
-            faulty.insert(key.into());
         }
     }
     faulty
@@ -41,19 +43,25 @@ struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     fn node(&mut self, node: &Node, schema: &'a Value, key: &str) {
+        if self.problems.len() >= MAX_PROBLEMS {
+            return;
+        }
         let choices = self.choices(schema);
         let fitting: Vec<&'a Value> = choices.iter().copied().filter(|s| fits(node, s)).collect();
         if fitting.is_empty() {
-            let expected = expected(&choices);
-            let message = format!("expected {expected}, found {}", node.kind());
-            self.report(key, node, message);
+            let message = format!("expected {}, found {}", expected(&choices), node.kind());
+            let is_list_of_tables = choices.iter().any(|s| self.is_table(&s["items"]));
+            let problem = self.report(key, node, message);
+            if is_list_of_tables && matches!(node.content, Content::Table(_)) {
+                problem.suggest(format!("write [[{key}]], there may be several"));
+            }
             return;
         }
         match &node.content {
             Content::Table(table) if self.is_tagged(schema) => self.tagged(node, table, &fitting, key),
             Content::Table(table) => self.table(node, table, fitting[0], key),
             Content::List(list) => self.list(node, list, fitting[0], key),
-            Content::Text(text) => self.text(node, text, &fitting, key),
+            Content::Text(text) => self.text(node, text, &choices, key),
             Content::Integer(v) => self.number(node, *v as f64, fitting[0], key),
             Content::Float(v) => self.number(node, *v, fitting[0], key),
             Content::Boolean(_) | Content::Date(_) => {}
@@ -73,6 +81,10 @@ impl<'a> Checker<'a> {
         }
     }
 
+    fn is_table(&self, schema: &'a Value) -> bool {
+        schema.is_object() && self.choices(schema).iter().any(|s| s["type"] == "object")
+    }
+
     /// The schemas one of which must hold, references resolved and `null` left out.
     fn choices(&self, schema: &'a Value) -> Vec<&'a Value> {
         if let Some(reference) = schema["$ref"].as_str() {
@@ -88,6 +100,7 @@ impl<'a> Checker<'a> {
 
     fn table(&mut self, node: &Node, table: &BTreeMap<String, Node>, schema: &'a Value, key: &str) {
         let Some(properties) = schema["properties"].as_object() else { return };
+        let start = self.problems.len();
         for (name, child) in table {
             let path = join(key, name);
             match properties.get(name) {
@@ -96,7 +109,7 @@ impl<'a> Checker<'a> {
             }
         }
         for name in strings(&schema["required"]) {
-            if !table.contains_key(name) {
+            if !table.contains_key(name) && !self.is_suggested(name, start) {
                 let about = self.about(&properties[name]);
                 let mut problem = Problem::new(join(key, name), "missing");
                 problem.suggest(about);
@@ -148,11 +161,17 @@ impl<'a> Checker<'a> {
 
     fn text(&mut self, node: &Node, text: &str, choices: &[&'a Value], key: &str) {
         let names: Vec<&str> = choices.iter().flat_map(|s| names_of(s)).collect();
-        if !names.is_empty() && !names.contains(&text) {
-            let planned = key == "method" && ["cracking-particles", "collocation"].contains(&text);
-            let message = if planned { "this method is not available yet" } else { "unknown name" };
-            self.report(key, node, message.into()).one_of(text, names);
+        if names.is_empty() || names.contains(&text) {
+            return;
         }
+        let tables: Vec<&str> = choices.iter().flat_map(|s| strings(&s["required"])).collect();
+        if tables.contains(&text) {
+            self.report(key, node, "a table, not a name".into()).suggest(format!("write [{key}.{text}]"));
+            return;
+        }
+        let planned = key == "method" && ["cracking-particles", "collocation"].contains(&text);
+        let message = if planned { "this method is not available yet" } else { "unknown name" };
+        self.report(key, node, message.into()).one_of(text, names.into_iter().chain(tables));
     }
 
     fn number(&mut self, node: &Node, value: f64, schema: &'a Value, key: &str) {
@@ -172,8 +191,17 @@ impl<'a> Checker<'a> {
     }
 
     fn unknown_key(&mut self, path: &str, name: &str, node: &Node, properties: &Map<String, Value>) {
+        if self.problems.len() >= MAX_PROBLEMS {
+            return;
+        }
         let names = properties.keys().map(String::as_str);
         self.place_key(path, node, "unknown key".into()).one_of(name, names);
+    }
+
+    /// Whether an unknown key among the problems from `start` should have been `name`.
+    fn is_suggested(&self, name: &str, start: usize) -> bool {
+        let suggestion = Some(format!("did you mean `{name}`?"));
+        self.problems[start..].iter().any(|p| p.suggestion == suggestion)
     }
 
     fn report(&mut self, key: &str, node: &Node, message: String) -> &mut Problem {
@@ -245,6 +273,7 @@ fn expected(choices: &[&Value]) -> String {
             "object" => "a table".into(),
             "array" => match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
                 (Some(a), Some(b)) if a == b => format!("a list of {a}{}", plural(&schema["items"])),
+                (None, Some(most)) => format!("a list of up to {most}"),
                 _ => "a list".into(),
             },
             _ if !names_of(schema).is_empty() => "a name".into(),
@@ -266,7 +295,8 @@ fn plural(items: &Value) -> &'static str {
 }
 
 fn join(key: &str, name: &str) -> String {
-    format!("{key}.{name}")
+    let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if is_bare { format!("{key}.{name}") } else { format!("{key}.{name:?}") }
 }
 
 fn last(key: &str) -> &str {

@@ -1,9 +1,12 @@
 //! The case file as a tree of values that know where they were written; overrides are set in it.
 
-use super::problem::{Origin, Problem};
+use super::problem::{MAX_PROBLEMS, Origin, Problem};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
+
+/// Tables with one key, which names a kind: an override with another kind replaces it.
+const CHOICES: [&str; 5] = ["geometry", "exact", "constraints", "nodes.layout", "integration.scheme"];
 
 /// A value with its place.
 #[derive(Clone, Debug)]
@@ -63,7 +66,7 @@ impl Document {
     /// Parses a case and sets the overrides; what cannot be parsed is reported and left out.
     pub fn parse(text: &str, overrides: &[String], problems: &mut Vec<Problem>) -> Self {
         let (table, errors) = DeTable::parse_recoverable(text);
-        for error in errors {
+        for error in errors.into_iter().take(MAX_PROBLEMS) {
             let mut problem = Problem::new("", error.message().replace('\n', ", "));
             problem.place(Origin::File, text, error.span().unwrap_or(0..0));
             problems.push(problem);
@@ -76,7 +79,7 @@ impl Document {
         for (index, text) in overrides.iter().enumerate() {
             if let Err(mut problem) = document.set(index, text) {
                 problem.origin = Origin::Override(index);
-                problems.push(problem);
+                problems.push(*problem);
             }
         }
         document
@@ -116,7 +119,8 @@ impl Document {
 
     /// The text of a value as it stands in the file, if it is short.
     pub fn written(&self, node: &Node) -> Option<String> {
-        if matches!(node.content, Content::Table(_)) {
+        let is_table = |n: &Node| matches!(n.content, Content::Table(_));
+        if is_table(node) || matches!(&node.content, Content::List(list) if list.iter().any(is_table)) {
             return None;
         }
         let text = self.text_of(node.origin).get(node.span.clone())?;
@@ -136,8 +140,21 @@ impl Document {
         self.root.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()
     }
 
-    fn set(&mut self, index: usize, text: &str) -> Result<(), Problem> {
-        let bad = |message: &str| Problem::new("", message);
+    /// Removes the kinds that give way to the one in `path`.
+    fn make_room(&mut self, path: &[&str]) {
+        for choice in CHOICES {
+            let n = choice.split('.').count();
+            if path.len() > n
+                && path[..n].join(".") == choice
+                && let Some(table) = kinds(&mut self.root, choice)
+            {
+                table.retain(|name, _| name == path[n]);
+            }
+        }
+    }
+
+    fn set(&mut self, index: usize, text: &str) -> Result<(), Box<Problem>> {
+        let bad = |message: &str| Box::new(Problem::new("", message));
         let Some((key, value)) = text.split_once('=') else {
             let mut problem = bad("an override has the form key=value");
             problem.suggest("for example --set material.young=210e9");
@@ -159,8 +176,21 @@ impl Document {
             },
         };
         place_all(&mut node, &(offset..text.len()), &(0..offset - 1));
+        self.make_room(&path);
         insert(&mut self.root, &path, node).map_err(|message| bad(&message))
     }
+}
+
+/// The table of one of the [`CHOICES`], if there is one.
+fn kinds<'d>(table: &'d mut BTreeMap<String, Node>, choice: &str) -> Option<&'d mut BTreeMap<String, Node>> {
+    let mut table = table;
+    for step in choice.split('.') {
+        match &mut table.get_mut(step)?.content {
+            Content::Table(inner) => table = inner,
+            _ => return None,
+        }
+    }
+    Some(table)
 }
 
 /// The steps of a key path: names and list indices.
@@ -284,6 +314,9 @@ mod tests {
         assert!(matches!(document.find("constraints.penalty.factor").unwrap().content, Content::Integer(5)));
         assert!(matches!(document.find("crack[0].path[1][0]").unwrap().content, Content::Integer(4)));
         assert!(matches!(&document.find("title").unwrap().content, Content::Text(s) if s == "My plate"));
+        let (document, _) = parse("[nodes.layout.structured]\nnx = 2\n", &["nodes.layout.graded.spacing=1"]);
+        assert!(matches!(document.find("nodes.layout.graded.spacing").unwrap().content, Content::Integer(1)));
+        assert!(matches!(&document.find("nodes.layout").unwrap().content, Content::Table(t) if t.len() == 1));
         let (_, problems) = parse(text, &["young", "crack.x.path=1", "=1", "crack[7].path=1"]);
         assert_eq!(problems.len(), 4);
     }

@@ -1,11 +1,12 @@
 //! The case file: text in, checked [`Model`] and [`Settings`] out.
 //!
 //! Reading order: [`schema`] (what may be written), [`document`] (what was written), [`check`] (names and types),
-//! [`build`] (geometry and sense). All mistakes are reported together, each at its line.
+//! [`expression`], [`build`] (geometry and sense). All mistakes are reported together, each at its line.
 
 mod build;
 mod check;
 mod document;
+mod expression;
 pub mod gmsh;
 mod problem;
 mod schema;
@@ -23,6 +24,19 @@ const MAX_BYTES: u64 = 10_000_000;
 const MAX_MESH_BYTES: u64 = 500_000_000;
 
 /// A valid case.
+///
+/// ```
+/// let text = "
+/// rigid_motion = 'mean-is-zero'
+/// material = { young = 210e3, poisson = 0.3, plane = 'strain' }
+/// geometry.rectangle = { lower = [0, 0], upper = [100, 200] }
+/// crack = [{ path = [[0, 100], [30, 100]] }]
+/// remote_stress.yy = 80
+/// ";
+/// let case = riss::case::Case::parse(text, "case.toml".as_ref(), &[])?;
+/// assert_eq!(case.model.cracks[0].length(), 30.0);
+/// # Ok::<(), riss::case::CaseErrors>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The problem.
@@ -53,7 +67,7 @@ impl Case {
                 file: path.into(),
                 text: String::new(),
                 overrides: overrides.to_vec(),
-                problems: vec![problem],
+                problems: vec![*problem],
             }),
         }
     }
@@ -77,6 +91,9 @@ impl Case {
                 notes,
             }),
             _ => {
+                if problems.len() >= problem::MAX_PROBLEMS {
+                    problems.push(Problem::new("", "there may be more problems; mend these first"));
+                }
                 problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
                 Err(CaseErrors { file: path.into(), text: text.into(), overrides: overrides.to_vec(), problems })
             }
@@ -95,16 +112,16 @@ pub fn json_schema() -> serde_json::Value {
 }
 
 /// The text of a file.
-fn read_text(path: &Path, max_bytes: u64) -> Result<String, Problem> {
+fn read_text(path: &Path, max_bytes: u64) -> Result<String, Box<Problem>> {
     let bytes = read_bytes(path, max_bytes)?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        Problem::new("", format!("the file is not UTF-8 text (first bad byte: number {})", at + 1))
+        Box::new(Problem::new("", format!("the file is not UTF-8 text (first bad byte: number {})", at + 1)))
     })
 }
 
 /// The bytes of a file.
-fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Problem> {
+fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Box<Problem>> {
     use std::io::Read;
     let bad = |e: std::io::Error| {
         let reason = match e.kind() {
@@ -113,17 +130,15 @@ fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Problem> {
             std::io::ErrorKind::PermissionDenied => "no permission to read it".into(),
             _ => e.to_string(),
         };
-        Problem::new("", format!("cannot read {}: {reason}", path.display()))
+        Box::new(Problem::new("", format!("cannot read {}: {reason}", path.display())))
     };
     let file = std::fs::File::open(path).map_err(bad)?;
     let mut bytes = vec![];
     // Read through a limit instead of asking for the size, which devices and pipes do not have.
     file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(bad)?;
     if bytes.len() as u64 > max_bytes {
-        return Err(Problem::new("", format!("{} is larger than {} MB", path.display(), max_bytes / 1_000_000)));
+        let message = format!("{} is larger than {} MB", path.display(), max_bytes / 1_000_000);
+        return Err(Box::new(Problem::new("", message)));
     }
     Ok(bytes)
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,6 +4,9 @@ use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
 
+/// More problems than this are not sought: their author has enough to do.
+pub(super) const MAX_PROBLEMS: usize = 100;
+
 /// Where the text of a problem stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Origin {

@@ -62,7 +62,7 @@ fn arc_vertices(arc: &schema::CrackArc, key: &str, size: f64, report: &mut Repor
         report.error(format!("{key}.through"), "start, through and end lie on a line").suggest("use `path`");
         return None;
     };
-    if !(radius < 1e5 * size) {
+    if radius >= 1e5 * size || !radius.is_finite() {
         report.error(key, "this arc is as good as straight").suggest("use `path`");
         return None;
     }
@@ -116,7 +116,7 @@ impl Builder<'_> {
             report.error(self.key.clone(), "this crack lies outside the body");
             return false;
         }
-        if let Some(k) = (1..n).find(|&k| !((self.vertices[k] - self.vertices[k - 1]).norm() > self.tolerance())) {
+        if let Some(k) = (1..n).find(|&k| (self.vertices[k] - self.vertices[k - 1]).norm() <= self.tolerance()) {
             report.error(self.vertex_key(k), "this point repeats the one before it");
             return false;
         }

@@ -1,8 +1,8 @@
 //! Loads: tractions, pressures, uniform stress, body force and forces at points.
 
-use super::expression;
 use super::outline::vector;
 use super::report::Report;
+use crate::case::expression::Expression;
 use crate::case::schema::{BodyForce, CaseFile, Load, Names, Scalar, Stress};
 use crate::exact::ExactField;
 use crate::material::Elasticity;
@@ -12,6 +12,8 @@ use std::sync::Arc;
 
 /// Points per edge at which fields are tried.
 const SAMPLES: usize = 9;
+/// Most parts in one list.
+const MAX_NAMES: usize = 1000;
 /// A point this far outside the body, times its size, still belongs to it.
 const OFF_BODY: f64 = 1e-6;
 
@@ -37,8 +39,9 @@ impl Setting<'_> {
             Names::One(name) => vec![(name, key.to_string())],
             Names::Many(list) => list.iter().enumerate().map(|(k, n)| (n, format!("{key}[{k}]"))).collect(),
         };
-        if list.is_empty() {
-            report.error(key, "no part is named");
+        if list.is_empty() || list.len() > MAX_NAMES {
+            report.error(key, format!("{} parts are named", list.len())).allow(format!("1 to {MAX_NAMES}"));
+            return vec![];
         }
         let mut parts = vec![];
         for (name, key) in list {
@@ -90,6 +93,27 @@ impl Setting<'_> {
     }
 }
 
+/// The field that a number or expression stands for.
+pub(super) fn field(scalar: &Scalar, key: &str, report: &mut Report) -> Option<ScalarField> {
+    let text = match scalar {
+        Scalar::Number(value) => return Some(ScalarField::Constant(*value)),
+        Scalar::Expression(text) => text,
+    };
+    match Expression::parse(text) {
+        Ok(expression) => Some(match expression.constant() {
+            Some(value) => ScalarField::Constant(value),
+            None => ScalarField::Function(Arc::new(move |at| expression.value(at))),
+        }),
+        Err(bad) => {
+            let problem = report.error(key, bad.message);
+            if let Some((name, names)) = bad.unknown {
+                problem.one_of(&name, names);
+            }
+            None
+        }
+    }
+}
+
 /// A field that is finite at the given points.
 pub(super) fn try_field(
     scalar: &Scalar,
@@ -97,19 +121,13 @@ pub(super) fn try_field(
     points: impl Iterator<Item = FieldPoint>,
     report: &mut Report,
 ) -> Option<Tried> {
-    let field = match expression::field(scalar) {
-        Ok(field) => field,
-        Err(bad) => {
-            report.error(key, bad.message).allowed = bad.allowed;
-            return None;
-        }
-    };
+    let field = field(scalar, key, report)?;
     let mut tried = Tried { field, largest: 0.0, least: f64::INFINITY };
     for at in points {
         let value = tried.field.value(&at);
         if !value.is_finite() {
             let p = at.position;
-            report.error(key, format!("is {value} at ({:.6}, {:.6})", p.x, p.y));
+            report.error(key, format!("is not finite: {value} at ({:.6}, {:.6})", p.x, p.y));
             return None;
         }
         tried.largest = tried.largest.max(value.abs());

@@ -4,7 +4,6 @@ mod boundary;
 mod cracks;
 mod crossings;
 mod exact;
-mod expression;
 mod loads;
 mod mesh;
 mod outline;
@@ -37,7 +36,7 @@ pub(super) fn build(
     let faulty = super::check::check(document, &super::json_schema(), problems);
     let file = deserialize(document, &faulty, problems)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut report = Report { document, problems, notes: vec![] };
+    let mut report = Report::new(document, problems);
     let material = material(&file.material, &mut report);
     let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
     let mut settings = settings::settings(&file, folder, &mut report);

@@ -80,7 +80,7 @@ fn rectangle(boundary: &mut Boundary, r: &Rectangle, report: &mut Report) -> Opt
 fn circle(boundary: &mut Boundary, d: &Disk, key: &str, name: &str, report: &mut Report) -> Option<Vec<Edge>> {
     report.positive(format!("{key}.radius"), d.radius).then(|| {
         let curve = Curve::circle(vector(d.center), d.radius);
-        vec![Edge { curve, parts: vec![boundary.part(name)], key: format!("{key}.radius") }]
+        vec![Edge { curve, parts: vec![boundary.part(name)], key: key.into() }]
     })
 }
 
@@ -184,11 +184,11 @@ fn edge_curve(from: Vector2, edge: &OutlineEdge, key: &str, report: &mut Report)
             return None;
         }
     };
-    if let Curve::Arc { radius, .. } = curve {
-        if !(radius < NEARLY_STRAIGHT * curve.length()) {
-            report.error(key, "this arc is as good as straight").suggest("write a straight edge");
-            return None;
-        }
+    if let Curve::Arc { radius, .. } = curve
+        && (radius >= NEARLY_STRAIGHT * curve.length() || !radius.is_finite())
+    {
+        report.error(key, "this arc is as good as straight").suggest("write a straight edge");
+        return None;
     }
     Some(curve)
 }
@@ -202,7 +202,7 @@ fn arc_around(
     report: &mut Report,
 ) -> Option<Curve> {
     let (r, s) = ((from - center).norm(), (to - center).norm());
-    if !((r - s).abs() <= RADIUS_MISMATCH * r.max(s)) {
+    if (r - s).abs() > RADIUS_MISMATCH * r.max(s) {
         let message = format!("the ends of the arc are {r} and {s} away from the center");
         report.error(format!("{key}.center"), message).suggest("both distances are the radius");
         return None;

@@ -59,7 +59,7 @@ fn project(boundary: &Boundary, on: PartId, p: Vector2, key: &str, report: &mut 
         }
     }
     let (distance, l, q) = best?;
-    if !(distance <= OFF_PART * boundary.size()) {
+    if distance > OFF_PART * boundary.size() || !distance.is_finite() {
         let message = format!("this point is {distance:.4} away from the part `{}`", boundary.names[on]);
         report.error(key, message).suggest(format!("the closest point of the part is [{}, {}]", q.x, q.y));
         return None;

@@ -1,18 +1,28 @@
 //! Where the builders put what they find.
 
 use crate::case::document::Document;
-use crate::case::problem::Problem;
+use crate::case::problem::{MAX_PROBLEMS, Problem};
 
 /// Problems and notes, placed in the document by their key.
 pub(super) struct Report<'a> {
     pub document: &'a Document,
     pub problems: &'a mut Vec<Problem>,
     pub notes: Vec<Problem>,
+    /// Takes what is beyond the limit.
+    overflow: Problem,
 }
 
-impl Report<'_> {
+impl<'a> Report<'a> {
+    /// An empty report on top of known problems.
+    pub fn new(document: &'a Document, problems: &'a mut Vec<Problem>) -> Self {
+        Self { document, problems, notes: vec![], overflow: Problem::new("", "") }
+    }
+
     /// Adds a problem with the value at `key`.
     pub fn error(&mut self, key: impl Into<String>, message: impl Into<String>) -> &mut Problem {
+        if self.problems.len() >= MAX_PROBLEMS {
+            return &mut self.overflow;
+        }
         let mut problem = Problem::new(key, message);
         self.document.locate(&mut problem);
         self.problems.push(problem);

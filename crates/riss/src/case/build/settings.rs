@@ -70,10 +70,10 @@ fn nodes(nodes: &schema::Nodes, folder: &Path, report: &mut Report) -> NodeSetti
                     report.positive(format!("nodes.layout.graded.{name}"), value);
                 }
             }
-            if let (Some(spacing), Some(tip)) = (graded.spacing, graded.tip_spacing) {
-                if tip > spacing {
-                    report.error("nodes.layout.graded.tip_spacing", "must not exceed `spacing`");
-                }
+            if let (Some(spacing), Some(tip)) = (graded.spacing, graded.tip_spacing)
+                && tip > spacing
+            {
+                report.error("nodes.layout.graded.tip_spacing", "must not exceed `spacing`");
             }
             Layout::Graded(graded.clone())
         }

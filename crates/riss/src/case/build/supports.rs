@@ -1,7 +1,6 @@
 //! Supports, foundations, and whether anything holds the body.
 
-use super::expression;
-use super::loads::Setting;
+use super::loads::{Setting, field};
 use super::outline::vector;
 use super::report::Report;
 use crate::case::schema::{RigidMotion, Scalar, Spring, Support};
@@ -167,12 +166,13 @@ fn add_point_support(
     let point = FieldPoint { position: at, normal: Vector2::zeros() };
     for (axis, name, scalar) in [(0, "x", &support.x), (1, "y", &support.y)] {
         let Some(scalar) = scalar else { continue };
-        match expression::field(scalar).map(|f| f.value(&point)) {
-            Ok(value) if value.is_finite() => displacement[axis] = Some(value),
-            Ok(value) => {
-                report.error(format!("{key}.{name}"), format!("is {value} at this point"));
+        let key = format!("{key}.{name}");
+        match field(scalar, &key, report).map(|f| f.value(&point)) {
+            Some(value) if value.is_finite() => displacement[axis] = Some(value),
+            Some(value) => {
+                report.error(key, format!("is not finite: {value} at this point"));
             }
-            Err(bad) => report.error(format!("{key}.{name}"), bad.message).allowed = bad.allowed,
+            None => {}
         }
     }
     supports.acts |= displacement.iter().flatten().any(|u| *u != 0.0);

@@ -4,7 +4,7 @@ use super::Point;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A number, or an expression in x, y and on the boundary the outward normal nx, ny.
+/// A number, or an expression such as "2*y^2 - sin(pi*x)" in x, y and on the boundary the outward normal nx, ny.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub(in crate::case) enum Scalar {

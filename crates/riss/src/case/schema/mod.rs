@@ -18,7 +18,7 @@ use serde::Deserialize;
 /// `[x, y]` [length].
 pub(in crate::case) type Point = [f64; 2];
 
-/// A riss case: a linear elastic body in the plane with cracks, loads and supports. Units are free but must be consistent.
+/// A riss case: a linear elastic body in the plane with cracks, loads and supports. Units are free but consistent.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "riss case")]
@@ -35,27 +35,34 @@ pub(in crate::case) struct CaseFile {
     pub geometry: Geometry,
     /// Holes in the body.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub hole: Vec<Hole>,
     /// Stretches of the boundary that get a name of their own.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub part: Vec<Part>,
     /// Cracks.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub crack: Vec<Crack>,
     /// Tractions on parts of the boundary.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub load: Vec<Load>,
     /// Uniform stress on every outer edge.
     #[serde(default)]
     pub remote_stress: Option<Stress>,
     /// Prescribed displacements.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub support: Vec<Support>,
     /// Elastic foundations.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub spring: Vec<Spring>,
     /// Forces at points.
     #[serde(default)]
+    #[schemars(length(max = 1000))]
     pub point_load: Vec<PointLoad>,
     /// Force per volume.
     #[serde(default)]
