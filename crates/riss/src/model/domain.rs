@@ -81,17 +81,17 @@ impl Domain {
             .collect();
         let mut inside = polygon::contains(&chords, p);
         for e in edges {
-            if let Curve::Arc { center, radius, .. } = *e {
-                if (p - center).norm() < radius {
-                    for k in 0..3 {
-                        let (a, b) = (e.point(k as f64 / 3.0), e.point((k + 1) as f64 / 3.0));
-                        // In the circular segment between chord and arc: on the arc's side of the chord.
-                        let middle = e.point((k as f64 + 0.5) / 3.0);
-                        let side = |q| crate::geometry::predicates::orientation(a, b, q) > 0.0;
-                        if side(p) == side(middle) {
-                            inside = !inside;
-                        }
-                    }
+            let Curve::Arc { center, radius, .. } = *e else { continue };
+            if (p - center).norm() >= radius {
+                continue;
+            }
+            for k in 0..3 {
+                let (a, b) = (e.point(k as f64 / 3.0), e.point((k + 1) as f64 / 3.0));
+                // In the circular segment between chord and arc: on the arc's side of the chord.
+                let middle = e.point((k as f64 + 0.5) / 3.0);
+                let side = |q| crate::geometry::predicates::orientation(a, b, q) > 0.0;
+                if side(p) == side(middle) {
+                    inside = !inside;
                 }
             }
         }

@@ -85,6 +85,6 @@ pub struct Spring {
 pub enum RigidMotion {
     /// Only the supports.
     Supported,
-    /// The mean displacement and the mean rotation of the body are zero [CPM, Eq. 26].
+    /// The mean displacement and the mean rotation of the body are zero [CPM, section 4.2].
     MeanIsZero,
 }

@@ -162,10 +162,13 @@ pub struct ConstraintRow {
     pub value: f64,
 }
 
+/// Coefficients by dof, and the right-hand side.
+type RowSum = (BTreeMap<usize, f64>, f64);
+
 /// Equations of the Lagrange multipliers: linear between the boundary points of each edge [EFG, Eq. 26].
 pub fn multiplier_rows(model: &Model, discrete: &Discretization, on: &Supports) -> Result<Vec<ConstraintRow>> {
     // Each edge has its own multipliers, because tractions jump at corners.
-    let mut rows: BTreeMap<(EdgeId, usize, u32), (BTreeMap<usize, f64>, f64)> = BTreeMap::new();
+    let mut rows: BTreeMap<(EdgeId, usize, u32), RowSum> = BTreeMap::new();
     let mut scratch = Scratch::default();
     for element in &discrete.boundary {
         for (index, support) in on.supports[element.edge].iter().enumerate() {

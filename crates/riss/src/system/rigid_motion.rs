@@ -132,7 +132,7 @@ fn support_rows(model: &Model, discrete: &Discretization) -> Result<Vec<(u32, Ve
     Ok(rows)
 }
 
-/// Mean rigid motion of the body, and the forces that balance its loads [CPM, Eq. 26].
+/// Mean rigid motion of the body, and the forces that balance its loads [CPM, section 4.2].
 pub struct MeanMotion {
     center: Vector2,
     size: f64,
