@@ -14,30 +14,57 @@ use crate::math::{Matrix, Vector};
 /// The scaled diagonal is of order one; at 1e-8 half of the digits of the fit are gone.
 pub const SINGULAR_PIVOT: f64 = 1e-8;
 
-/// Neighbors of one point: what the fit reads. A buffer, one per thread.
-#[derive(Clone, Debug, Default)]
+/// Neighbors of one point, as arrays: what the fit reads. A buffer, one per thread.
+#[derive(Clone, Debug)]
 pub struct Neighborhood<const D: usize> {
     /// Node indices.
     pub nodes: Vec<u32>,
-    /// Node minus point.
-    pub offsets: Vec<Vector<D>>,
+    /// Node minus point, axis by axis.
+    pub offsets: [Vec<f64>; D],
     /// Weights.
     pub weights: Vec<f64>,
-    /// Gradients of the weights by the point.
-    pub weight_gradients: Vec<Vector<D>>,
+    /// Gradients of the weights by the point, axis by axis.
+    pub weight_gradients: [Vec<f64>; D],
     /// Second derivatives of the weights by the point; empty unless they are wanted.
     pub weight_second_derivatives: Vec<Matrix<D>>,
+    /// Squared relative distances, while weights are computed.
+    pub(super) relative: Vec<f64>,
+    /// Inverse squared support radii, while weights are computed.
+    pub(super) inverse: Vec<f64>,
     basis: Vec<f64>,
 }
 
+impl<const D: usize> Default for Neighborhood<D> {
+    fn default() -> Self {
+        Self {
+            nodes: vec![],
+            offsets: std::array::from_fn(|_| vec![]),
+            weights: vec![],
+            weight_gradients: std::array::from_fn(|_| vec![]),
+            weight_second_derivatives: vec![],
+            relative: vec![],
+            inverse: vec![],
+            basis: vec![],
+        }
+    }
+}
+
 impl<const D: usize> Neighborhood<D> {
-    /// Forgets all neighbors.
-    pub fn clear(&mut self) {
-        self.nodes.clear();
-        self.offsets.clear();
-        self.weights.clear();
-        self.weight_gradients.clear();
+    /// Makes every array but the second derivatives `n` long.
+    pub(super) fn resize(&mut self, n: usize) {
+        self.nodes.resize(n, 0);
+        self.offsets.iter_mut().for_each(|v| v.resize(n, 0.0));
+        self.weights.resize(n, 0.0);
+        self.weight_gradients.iter_mut().for_each(|v| v.resize(n, 0.0));
+        self.relative.resize(n, 0.0);
+        self.inverse.resize(n, 0.0);
         self.weight_second_derivatives.clear();
+    }
+
+    /// Node minus point.
+    #[inline]
+    pub fn offset(&self, k: usize) -> Vector<D> {
+        Vector::<D>::from_fn(|d, _| self.offsets[d][k])
     }
 }
 
@@ -70,7 +97,7 @@ pub fn quality<const D: usize>(basis: Basis, near: &mut Neighborhood<D>) -> f64 
 
 /// Basis values at a scaled offset: 1, then coordinates, then products.
 #[inline]
-fn basis_at<const D: usize, const M: usize>(xi: &Vector<D>) -> [f64; M] {
+fn basis_at<const D: usize, const M: usize>(xi: [f64; D]) -> [f64; M] {
     let mut p = [0.0; M];
     p[0] = 1.0;
     for d in 0..D {
@@ -92,8 +119,8 @@ fn basis_at<const D: usize, const M: usize>(xi: &Vector<D>) -> [f64; M] {
 #[inline]
 fn scale<const D: usize>(near: &Neighborhood<D>) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
-    for (w, offset) in near.weights.iter().zip(&near.offsets) {
-        sum += w * offset.norm_squared();
+    for (k, w) in near.weights.iter().enumerate() {
+        sum += w * near.offsets.iter().map(|o| o[k] * o[k]).sum::<f64>();
         total += w;
     }
     if sum > 0.0 { (total / sum).sqrt() } else { 1.0 }
@@ -103,16 +130,17 @@ fn scale<const D: usize>(near: &Neighborhood<D>) -> f64 {
 #[inline]
 fn moment<const D: usize, const M: usize>(near: &mut Neighborhood<D>, scale: f64) -> [[f64; M]; M] {
     let mut a = [[0.0; M]; M];
-    near.basis.clear();
-    for (w, offset) in near.weights.iter().zip(&near.offsets) {
-        let p: [f64; M] = basis_at(&(offset * scale));
+    near.basis.resize(M * near.nodes.len(), 0.0);
+    let (basis, _) = near.basis.as_chunks_mut::<M>();
+    let offsets: [&[f64]; D] = std::array::from_fn(|d| &near.offsets[d][..basis.len()]);
+    for (k, (w, p)) in near.weights.iter().zip(basis).enumerate() {
+        *p = basis_at::<D, M>(std::array::from_fn(|d| offsets[d][k] * scale));
         for i in 0..M {
             let wp = w * p[i];
             for j in 0..=i {
                 a[i][j] += wp * p[j];
             }
         }
-        near.basis.extend_from_slice(&p);
     }
     a
 }
@@ -127,15 +155,15 @@ fn fit<const D: usize, const M: usize>(near: &mut Neighborhood<D>, shape: &mut S
     let gamma = factor.solve(unit);
     let (basis, _) = near.basis.as_chunks::<M>();
     // A_i γ needs only the scalar p_I · γ of each neighbor.
-    shape.clear();
+    shape.reset(&near.nodes);
+    let slopes: [&[f64]; D] = std::array::from_fn(|d| &near.weight_gradients[d][..n]);
     let mut products = [[0.0; M]; D];
-    for k in 0..n {
-        let value = dot(&basis[k], &gamma);
-        shape.values.push(value);
+    for (k, (p, value)) in basis.iter().zip(&mut shape.values).enumerate() {
+        *value = dot(p, &gamma);
         for d in 0..D {
-            let f = near.weight_gradients[k][d] * value;
+            let f = slopes[d][k] * *value;
             for i in 0..M {
-                products[d][i] += f * basis[k][i];
+                products[d][i] += f * p[i];
             }
         }
     }
@@ -148,15 +176,13 @@ fn fit<const D: usize, const M: usize>(near: &mut Neighborhood<D>, shape: &mut S
     if wants_second {
         second_derivatives(near, shape, scale, &factor, &gamma, &gamma_by);
     }
-    for k in 0..n {
-        let (w, value) = (near.weights[k], shape.values[k]);
-        let gradient = std::array::from_fn::<f64, D, _>(|d| {
-            w * dot(&basis[k], &gamma_by[d]) + near.weight_gradients[k][d] * value
-        });
-        shape.gradients.push(Vector::<D>::from(gradient));
-        shape.values[k] = w * value;
+    let targets = shape.values.iter_mut().zip(&mut shape.gradients);
+    for (k, ((p, w), (value, gradient))) in basis.iter().zip(&near.weights).zip(targets).enumerate() {
+        for d in 0..D {
+            gradient[d] = w * dot(p, &gamma_by[d]) + slopes[d][k] * *value;
+        }
+        *value *= w;
     }
-    shape.neighbors.extend_from_slice(&near.nodes);
     true
 }
 
@@ -195,8 +221,8 @@ fn second_derivatives<const D: usize, const M: usize>(
                 }
             }
             for k in 0..n {
-                let f = near.weight_gradients[k][i] * dot(&basis[k], &gamma_by[j])
-                    + near.weight_gradients[k][j] * dot(&basis[k], &gamma_by[i])
+                let f = near.weight_gradients[i][k] * dot(&basis[k], &gamma_by[j])
+                    + near.weight_gradients[j][k] * dot(&basis[k], &gamma_by[i])
                     + near.weight_second_derivatives[k][(i, j)] * dot(&basis[k], gamma);
                 for m in 0..M {
                     right[m] -= f * basis[k][m];
@@ -205,8 +231,8 @@ fn second_derivatives<const D: usize, const M: usize>(
             let gamma_ij = factor.solve(right);
             for k in 0..n {
                 let value = near.weights[k] * dot(&basis[k], &gamma_ij)
-                    + near.weight_gradients[k][i] * dot(&basis[k], &gamma_by[j])
-                    + near.weight_gradients[k][j] * dot(&basis[k], &gamma_by[i])
+                    + near.weight_gradients[i][k] * dot(&basis[k], &gamma_by[j])
+                    + near.weight_gradients[j][k] * dot(&basis[k], &gamma_by[i])
                     + near.weight_second_derivatives[k][(i, j)] * dot(&basis[k], gamma);
                 shape.second_derivatives[k][(i, j)] = value;
                 shape.second_derivatives[k][(j, i)] = value;

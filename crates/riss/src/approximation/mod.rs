@@ -27,11 +27,12 @@ pub struct ShapeFunctions<const D: usize> {
 }
 
 impl<const D: usize> ShapeFunctions<D> {
-    /// Forgets the point.
-    pub fn clear(&mut self) {
+    /// Makes room for new neighbors.
+    fn reset(&mut self, neighbors: &[u32]) {
         self.neighbors.clear();
-        self.values.clear();
-        self.gradients.clear();
+        self.neighbors.extend_from_slice(neighbors);
+        self.values.resize(neighbors.len(), 0.0);
+        self.gradients.resize(neighbors.len(), Vector::zeros());
         self.second_derivatives.clear();
     }
 

@@ -26,6 +26,10 @@ pub struct Surroundings {
     pub candidates: Vec<u32>,
     /// Obstacles that may hide.
     pub obstacles: Vec<u32>,
+    /// Positions of the candidates, axis by axis.
+    positions: [Vec<f64>; 2],
+    /// Inverse squared support radii of the candidates, where supports are circular.
+    inverse: Vec<f64>,
     /// Buffer of the fit.
     pub near: Neighborhood<2>,
 }
@@ -72,32 +76,89 @@ impl MovingLeastSquares {
             reach = reach.including(self.nodes.sights[i as usize]);
         }
         self.obstacles.near_into(&reach, &mut around.obstacles);
+        let [xs, ys] = &mut around.positions;
+        xs.clear();
+        ys.clear();
+        around.inverse.clear();
+        for &i in &around.candidates {
+            let (p, r) = (self.nodes.positions[i as usize], self.nodes.support_radii[i as usize].x);
+            xs.push(p.x);
+            ys.push(p.y);
+            around.inverse.push(1.0 / (r * r));
+        }
     }
 
     /// Gathers the visible neighbors of a point that was surveyed.
     #[inline]
     pub fn gather(&self, at: Vector2, sight: Vector2, derivatives: Derivatives, around: &mut Surroundings) {
-        let Surroundings { candidates, obstacles, near } = around;
-        let (shape, function) = (self.settings.support, self.settings.weight_function);
-        near.clear();
-        for &i in candidates.iter() {
-            let index = i as usize;
-            let (offset, radii) = (self.nodes.positions[index] - at, &self.nodes.support_radii[index]);
-            if !WeightFunction::reaches(shape, &offset, radii) {
-                continue;
-            }
-            if !obstacles.is_empty() && !self.obstacles.visible_past(obstacles, sight, self.nodes.sights[index]) {
-                continue;
-            }
-            let (weight, gradient) = function.weight(shape, &offset, radii);
-            near.nodes.push(i);
-            near.offsets.push(offset);
-            near.weights.push(weight);
-            near.weight_gradients.push(gradient);
-            if derivatives == Derivatives::Second {
-                near.weight_second_derivatives.push(function.second_derivatives(shape, &offset, radii));
+        let visible = |obstacles: &[u32], node: u32| {
+            obstacles.is_empty() || self.obstacles.visible_past(obstacles, sight, self.nodes.sights[node as usize])
+        };
+        match self.settings.support {
+            SupportShape::Circular => self.gather_circular(at, around, visible),
+            SupportShape::Rectangular => self.gather_rectangular(at, around, visible),
+        }
+        if derivatives == Derivatives::Second {
+            let (function, shape) = (self.settings.weight_function, self.settings.support);
+            let near = &mut around.near;
+            for (k, &i) in near.nodes.iter().enumerate() {
+                let offset = near.offset(k);
+                let second = function.second_derivatives(shape, &offset, &self.nodes.support_radii[i as usize]);
+                near.weight_second_derivatives.push(second);
             }
         }
+    }
+
+    /// Disks: distances of all candidates at once, then the weights of those in reach.
+    #[inline]
+    fn gather_circular(&self, at: Vector2, around: &mut Surroundings, visible: impl Fn(&[u32], u32) -> bool) {
+        let Surroundings { candidates, obstacles, positions, inverse, near } = around;
+        let n = candidates.len();
+        near.resize(n);
+        let [xs, ys] = positions;
+        let [ox, oy] = &mut near.offsets;
+        let mut m = 0;
+        // Every candidate is written, and overwritten by the next if it is out of reach: no branch to guess.
+        for (((&node, &px), &py), &inverse2) in candidates.iter().zip(&*xs).zip(&*ys).zip(&*inverse) {
+            let (x, y) = (px - at.x, py - at.y);
+            let s2 = (x * x + y * y) * inverse2;
+            near.nodes[m] = node;
+            ox[m] = x;
+            oy[m] = y;
+            near.relative[m] = s2;
+            near.inverse[m] = inverse2;
+            m += (s2 < 1.0 && visible(obstacles, node)) as usize;
+        }
+        near.resize(m);
+        let [gx, gy] = &mut near.weight_gradients;
+        self.settings.weight_function.values_and_slopes(&near.relative, &mut near.weights, gx);
+        let [ox, oy] = &near.offsets;
+        for k in 0..m {
+            let factor = -gx[k] * near.inverse[k];
+            gx[k] = factor * ox[k];
+            gy[k] = factor * oy[k];
+        }
+    }
+
+    #[inline(never)]
+    fn gather_rectangular(&self, at: Vector2, around: &mut Surroundings, visible: impl Fn(&[u32], u32) -> bool) {
+        let Surroundings { candidates, obstacles, near, .. } = around;
+        near.resize(candidates.len());
+        let mut m = 0;
+        for &i in candidates.iter() {
+            let (offset, radii) = (self.nodes.positions[i as usize] - at, &self.nodes.support_radii[i as usize]);
+            if WeightFunction::reaches(SupportShape::Rectangular, &offset, radii) && visible(obstacles, i) {
+                let (weight, gradient) = self.settings.weight_function.weight(SupportShape::Rectangular, &offset, radii);
+                near.nodes[m] = i;
+                near.weights[m] = weight;
+                for d in 0..2 {
+                    near.offsets[d][m] = offset[d];
+                    near.weight_gradients[d][m] = gradient[d];
+                }
+                m += 1;
+            }
+        }
+        near.resize(m);
     }
 
     /// Shape functions at a point that was surveyed, seen from `sight` (the point itself inside the body, a point

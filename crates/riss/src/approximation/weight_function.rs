@@ -7,8 +7,24 @@ use crate::math::{Matrix, Vector};
 const GAUSSIAN_EXPONENT: f64 = 16.0;
 
 impl WeightFunction {
+    /// Weights and slopes `w'/s` of many squared relative distances; the choice of function is made once.
+    pub fn values_and_slopes(self, s2: &[f64], weights: &mut [f64], slopes: &mut [f64]) {
+        macro_rules! fill {
+            ($function:expr) => {
+                for ((s2, w), slope) in s2.iter().zip(weights).zip(slopes) {
+                    (*w, *slope) = $function.value_and_slope(*s2);
+                }
+            };
+        }
+        match self {
+            Self::Gaussian => fill!(Self::Gaussian),
+            Self::QuarticSpline => fill!(Self::QuarticSpline),
+            Self::CubicSpline => fill!(Self::CubicSpline),
+        }
+    }
+
     /// Weight `w(s)` and `w'(s)/s` at relative distance `s = d/r < 1`.
-    #[inline]
+    #[inline(always)]
     pub fn value_and_slope(self, s2: f64) -> (f64, f64) {
         match self {
             Self::Gaussian => {
