@@ -11,7 +11,7 @@ use crate::math::{Vector2, cross, turn_left};
 use crate::model::Domain;
 use crate::nodes::Triangulation;
 use crate::nodes::triangulation::SIGHT_SHIFT;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// A point on the outline of a cell.
@@ -101,9 +101,9 @@ pub fn as_usize(range: &Range<u32>) -> Range<usize> {
 struct Builder<'a> {
     triangulation: &'a Triangulation,
     /// Curved boundary pieces by the copies at their ends.
-    arcs: HashMap<[u32; 2], Curve>,
+    arcs: FxHashMap<[u32; 2], Curve>,
     /// The triangle to the left of each directed edge.
-    left_of: HashMap<[u32; 2], u32>,
+    left_of: FxHashMap<[u32; 2], u32>,
     is_tip: Vec<bool>,
     regular: Vec<([f64; 3], f64)>,
     at_tip: Vec<([f64; 3], f64)>,
@@ -126,7 +126,7 @@ impl<'a> Builder<'a> {
             .filter(|s| matches!(domain.edges[s.edge], Curve::Arc { .. }))
             .map(|s| (s.points, domain.edges[s.edge].piece(s.range[0], s.range[1])))
             .collect();
-        let mut left_of = HashMap::new();
+        let mut left_of = FxHashMap::default();
         for (i, t) in triangulation.triangles.iter().enumerate() {
             for k in 0..3 {
                 left_of.insert([t[k], t[(k + 1) % 3]], i as u32);

@@ -2,7 +2,7 @@
 
 use super::spacing::SpacingField;
 use crate::math::{Vector2, direction};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Candidates around each point.
 const CANDIDATES: usize = 12;
@@ -45,7 +45,7 @@ pub fn fill(
 /// Points in square bins whose size follows their spacing by powers of two.
 #[derive(Default)]
 struct LevelGrid {
-    bins: HashMap<(i32, i64, i64), Vec<u32>>,
+    bins: FxHashMap<(i32, i64, i64), Vec<u32>>,
 }
 
 impl LevelGrid {

@@ -4,7 +4,7 @@ use super::chains::{Chains, CrackNodes};
 use super::fill::fill;
 use super::settings::{Layout, NodeSettings, Star};
 use super::spacing::SpacingField;
-use super::triangulation::Triangulation;
+use super::triangulation::{Triangulation, inner_triangles};
 use crate::error::{Error, Result};
 use crate::math::{Vector2, direction};
 use crate::model::Model;
@@ -137,10 +137,10 @@ fn fill_irregular(chains: &mut Chains, model: &Model, spacing: &SpacingField, st
 
 /// Moves each free point to the mean of the triangles around it, each weighted by its number of nodes' worth of area.
 fn smooth(chains: &mut Chains, n_fixed: usize) -> Result<()> {
-    let triangulation = Triangulation::new(chains)?;
+    let triangles = inner_triangles(chains)?;
     let mut sums = vec![(Vector2::zeros(), 0.0); chains.positions.len()];
-    for t in &triangulation.triangles {
-        let points = t.map(|c| triangulation.copies[c as usize].point as usize);
+    for t in &triangles {
+        let points = t.map(|p| p as usize);
         let [a, b, c] = points.map(|p| chains.positions[p]);
         let h = points.iter().map(|&p| chains.spacing[p]).sum::<f64>() / 3.0;
         let weight = crate::math::cross(b - a, c - a) / (h * h);

@@ -7,7 +7,7 @@ use super::chains::{BoundarySegment, Chains};
 use crate::error::{Error, Result};
 use crate::math::{Vector2, cross, direction};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 /// How far a copy's point of view is moved into its sector, over the local point distance.
 ///
@@ -48,7 +48,7 @@ impl Triangulation {
     /// Triangulates the points of `chains`; segments of the boundary and pieces of cracks become edges.
     pub fn new(chains: &Chains) -> Result<Self> {
         let triangles = inner_triangles(chains)?;
-        let cracks: HashSet<[u32; 2]> = chains.crack_pieces.iter().map(|p| sorted(p.points)).collect();
+        let cracks: FxHashSet<[u32; 2]> = chains.crack_pieces.iter().map(|p| sorted(p.points)).collect();
         let mut result = Self { positions: chains.positions.clone(), ..Self::default() };
         result.measure_edges(&triangles);
         result.make_copies(&triangles, &cracks, chains);
@@ -70,7 +70,7 @@ impl Triangulation {
     }
 
     /// Walks around each point, from crack or boundary edge to crack or boundary edge.
-    fn make_copies(&mut self, triangles: &[[u32; 3]], cracks: &HashSet<[u32; 2]>, chains: &Chains) {
+    fn make_copies(&mut self, triangles: &[[u32; 3]], cracks: &FxHashSet<[u32; 2]>, chains: &Chains) {
         let mut around: Vec<Vec<(u32, u8)>> = vec![vec![]; self.positions.len()];
         for (i, t) in triangles.iter().enumerate() {
             for k in 0..3 {
@@ -144,7 +144,7 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-fn sectors(point: u32, corners: &[(u32, u8)], triangles: &[[u32; 3]], cracks: &HashSet<[u32; 2]>) -> Vec<Sector> {
+fn sectors(point: u32, corners: &[(u32, u8)], triangles: &[[u32; 3]], cracks: &FxHashSet<[u32; 2]>) -> Vec<Sector> {
     let after = |c: (u32, u8)| triangles[c.0 as usize][(c.1 as usize + 1) % 3];
     let before = |c: (u32, u8)| triangles[c.0 as usize][(c.1 as usize + 2) % 3];
     let cut = |q: u32| cracks.contains(&sorted([point, q]));
@@ -174,8 +174,8 @@ fn sectors(point: u32, corners: &[(u32, u8)], triangles: &[[u32; 3]], cracks: &H
     result
 }
 
-/// Triangles inside the body, by point.
-fn inner_triangles(chains: &Chains) -> Result<Vec<[u32; 3]>> {
+/// Triangles inside the body, by point, without copies.
+pub fn inner_triangles(chains: &Chains) -> Result<Vec<[u32; 3]>> {
     let failed = |reason: String| Error::NodeGeneration { reason };
     // Shifted and scaled to the unit box, where the predicates of the triangulation are safe for any unit.
     let bounds = crate::geometry::aabb::Aabb::of_points(chains.positions.iter().copied());
@@ -203,7 +203,7 @@ fn inner_triangles(chains: &Chains) -> Result<Vec<[u32; 3]>> {
         let from = cdt.get_vertex(spade::handles::FixedVertexHandle::from_index(a as usize))?;
         from.out_edges().find(|e| e.to().fix().index() == b as usize)
     };
-    let boundary: HashSet<[u32; 2]> = chains.boundary.iter().map(|s| sorted(s.points)).collect();
+    let boundary: FxHashSet<[u32; 2]> = chains.boundary.iter().map(|s| sorted(s.points)).collect();
     let mut inside = vec![false; cdt.num_all_faces()];
     let mut queue = vec![];
     for segment in &chains.boundary {

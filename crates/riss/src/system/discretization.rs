@@ -113,18 +113,10 @@ impl Discretization {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
-        let approximation = safeguard(nodes, obstacles, *approximation, &cells, &boundary)?;
-        let mut result = Self {
-            approximation,
-            triangulation,
-            node_of_copy,
-            cells,
-            boundary,
-            cell_nodes: NodeLists::default(),
-            boundary_nodes: NodeLists::default(),
-        };
-        result.list_neighbors();
-        Ok(result)
+        let (approximation, lists) = safeguard(nodes, obstacles, *approximation, &cells, &boundary)?;
+        let (of_cells, of_boundary) = lists.split_at(cells.len());
+        let (cell_nodes, boundary_nodes) = (NodeLists::from_lists(of_cells), NodeLists::from_lists(of_boundary));
+        Ok(Self { approximation, triangulation, node_of_copy, cells, boundary, cell_nodes, boundary_nodes })
     }
 
     /// Number of nodes.
@@ -148,26 +140,6 @@ impl Discretization {
         let q = self.triangulation.positions[copy.point as usize];
         p + (copy.sight - q)
     }
-
-    fn list_neighbors(&mut self) {
-        let lists: Vec<Vec<u32>> = (0..self.cells.len())
-            .into_par_iter()
-            .map_init(Surroundings::default, |around, cell| {
-                self.approximation.survey(&self.cells.bounds(cell), around);
-                neighbors_of(&self.approximation, cell_views(&self.cells, cell), around)
-            })
-            .collect();
-        self.cell_nodes = NodeLists::from_lists(&lists);
-        let lists: Vec<Vec<u32>> = self
-            .boundary
-            .par_iter()
-            .map_init(Surroundings::default, |around, element| {
-                self.approximation.survey(&element.bounds(), around);
-                neighbors_of(&self.approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
-            })
-            .collect();
-        self.boundary_nodes = NodeLists::from_lists(&lists);
-    }
 }
 
 /// Position and sight of all points of a cell, those of its outline included.
@@ -176,20 +148,70 @@ fn cell_views(cells: &IntegrationCells, cell: usize) -> impl Iterator<Item = (Ve
     points.chain(cells.edge_points[as_usize(&cells.edge_ranges[cell])].iter().map(|p| (p.position, p.sight)))
 }
 
-/// All nodes that any of the points sees, ascending.
-fn neighbors_of(
+/// What the points of one cell or boundary element see.
+#[derive(Default)]
+struct Inspection {
+    /// All nodes that any of the points sees, ascending.
+    neighbors: Vec<u32>,
+    /// Points whose moment matrix is poor.
+    poor: Vec<Poor>,
+}
+
+struct Poor {
+    at: Vector2,
+    sight: Vector2,
+    quality: f64,
+    n_neighbors: usize,
+}
+
+fn inspect(
     approximation: &MovingLeastSquares,
     views: impl Iterator<Item = (Vector2, Vector2)>,
     around: &mut Surroundings,
-) -> Vec<u32> {
-    let mut found: Vec<u32> = vec![];
+) -> Inspection {
+    let mut result = Inspection::default();
+    let mut seen = vec![false; around.candidates.len()];
     for (at, sight) in views {
         approximation.gather(at, sight, Derivatives::First, around);
-        found.extend_from_slice(&around.near.nodes);
+        let mut k = 0;
+        for &i in &around.near.nodes {
+            while around.candidates[k] != i {
+                k += 1;
+            }
+            seen[k] = true;
+        }
+        let n_neighbors = around.near.nodes.len();
+        let quality = if n_neighbors < approximation.n_needed() { 0.0 } else { approximation.quality(around) };
+        if quality < POOR_PIVOT {
+            result.poor.push(Poor { at, sight, quality, n_neighbors });
+        }
     }
-    found.sort_unstable();
-    found.dedup();
-    found
+    let visible = around.candidates.iter().zip(&seen).filter(|(_, seen)| **seen);
+    result.neighbors = visible.map(|(i, _)| *i).collect();
+    result
+}
+
+/// Inspects cells (first) and boundary elements (after them) by index.
+fn inspect_all(
+    approximation: &MovingLeastSquares,
+    cells: &IntegrationCells,
+    boundary: &[BoundaryElement],
+    which: &[usize],
+) -> Vec<Inspection> {
+    let n_cells = cells.len();
+    which
+        .par_iter()
+        .map_init(Surroundings::default, |around, &i| {
+            if i < n_cells {
+                approximation.survey(&cells.bounds(i), around);
+                inspect(approximation, cell_views(cells, i), around)
+            } else {
+                let element = &boundary[i - n_cells];
+                approximation.survey(&element.bounds(), around);
+                inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
+            }
+        })
+        .collect()
 }
 
 fn nodes_of(triangulation: &Triangulation, is_node: &[bool]) -> (Nodes<2>, Vec<Option<u32>>) {
@@ -235,79 +257,40 @@ fn set_supports(
         spacings.iter().map(|c| support_radii(settings.support, settings.dilation(), Vector2::repeat(*c))).collect();
 }
 
-/// Enlarges supports until every integration point has a well-conditioned moment matrix.
+/// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
+/// cells, then of all boundary elements.
 fn safeguard(
     mut nodes: Nodes<2>,
     obstacles: Obstacles,
     settings: ApproximationSettings,
     cells: &IntegrationCells,
     boundary: &[BoundaryElement],
-) -> Result<MovingLeastSquares> {
-    let n_cells = cells.len();
-    let mut suspects: Vec<usize> = (0..n_cells + boundary.len()).collect();
+) -> Result<(MovingLeastSquares, Vec<Vec<u32>>)> {
+    let all: Vec<usize> = (0..cells.len() + boundary.len()).collect();
+    let mut suspects = all.clone();
     let tree = BoxTree::of_points(&nodes.positions);
     for round in 0..=SUPPORT_ROUNDS {
         let approximation = MovingLeastSquares::new(nodes, obstacles.clone(), settings);
-        let poor: Vec<Vec<Poor>> = suspects
-            .par_iter()
-            .map_init(Surroundings::default, |around, &i| {
-                if i < n_cells {
-                    approximation.survey(&cells.bounds(i), around);
-                    poor_points(&approximation, cell_views(cells, i), around)
-                } else {
-                    let element = &boundary[i - n_cells];
-                    approximation.survey(&element.bounds(), around);
-                    poor_points(&approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
-                }
-            })
-            .collect();
-        if poor.iter().all(Vec::is_empty) {
-            return Ok(approximation);
-        }
-        if round == SUPPORT_ROUNDS {
-            // Poor but not singular is taken; the fit itself refuses what is singular.
-            let worst = poor.iter().flatten().min_by(|a, b| a.quality.total_cmp(&b.quality)).expect("some are poor");
-            if worst.quality == 0.0 {
-                return Err(Error::SingularMomentMatrix {
-                    point: worst.at,
-                    n_neighbors: worst.n_neighbors,
-                    needed: approximation.n_needed(),
-                });
+        let found = inspect_all(&approximation, cells, boundary, &suspects);
+        let poor = || found.iter().flat_map(|i| &i.poor);
+        // Poor but not singular is taken after the last round.
+        if let Some(worst) = poor().min_by(|a, b| a.quality.total_cmp(&b.quality)) {
+            if round == SUPPORT_ROUNDS && worst.quality == 0.0 {
+                let (n_neighbors, needed) = (worst.n_neighbors, approximation.n_needed());
+                return Err(Error::SingularMomentMatrix { point: worst.at, n_neighbors, needed });
             }
-            return Ok(approximation);
+            if round < SUPPORT_ROUNDS {
+                nodes = approximation.nodes().clone();
+                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p, approximation.n_needed() + 3));
+                suspects = suspects.iter().zip(&found).filter(|(_, f)| !f.poor.is_empty()).map(|(i, _)| *i).collect();
+                continue;
+            }
         }
-        suspects = suspects.iter().zip(&poor).filter(|(_, p)| !p.is_empty()).map(|(i, _)| *i).collect();
-        let wanted = approximation.n_needed() + 3;
-        nodes = approximation.nodes().clone();
-        for p in poor.iter().flatten() {
-            enlarge_around(&mut nodes, &obstacles, &tree, p, wanted);
-        }
+        // Larger supports reach other cells too.
+        let lists = if round == 0 { found } else { inspect_all(&approximation, cells, boundary, &all) };
+        return Ok((approximation, lists.into_iter().map(|i| i.neighbors).collect()));
     }
     unreachable!("the last round returns")
-}
-
-struct Poor {
-    at: Vector2,
-    sight: Vector2,
-    quality: f64,
-    n_neighbors: usize,
-}
-
-fn poor_points(
-    approximation: &MovingLeastSquares,
-    views: impl Iterator<Item = (Vector2, Vector2)>,
-    around: &mut Surroundings,
-) -> Vec<Poor> {
-    let mut poor = vec![];
-    for (at, sight) in views {
-        approximation.gather(at, sight, Derivatives::First, around);
-        let n_neighbors = around.near.nodes.len();
-        let quality = if n_neighbors < approximation.n_needed() { 0.0 } else { approximation.quality(around) };
-        if quality < POOR_PIVOT {
-            poor.push(Poor { at, sight, quality, n_neighbors });
-        }
-    }
-    poor
 }
 
 /// Lets the `wanted` nearest visible nodes reach the point well.
