@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-10;
 /// The same with arcs, where four Gauss points on a piece of up to half a radian integrate cosines to 1e-9.
 const ARC_RULE: f64 = 1e-8;
 
-const NITSCHE: ConstraintMethod = ConstraintMethod::Nitsche { factor: 10.0 };
+const NITSCHE: ConstraintMethod = ConstraintMethod::Nitsche { factor: 40.0 };
 const PLANES: [PlaneState; 2] = [PlaneState::Strain, PlaneState::Stress];
 
 /// Any linear field.
