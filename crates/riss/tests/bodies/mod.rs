@@ -2,7 +2,9 @@
 
 #![allow(dead_code, reason = "no test program uses all of it")]
 
-use riss::analysis::{Settings, Silent, StaticResult, linear_static};
+use riss::analysis::{Settings, Silent, StaticResult, discretize, linear_static};
+use riss::approximation::moving_least_squares::Derivatives;
+use riss::approximation::{ShapeFunctions, Surroundings};
 use riss::crack::CrackPath;
 use riss::exact::ExactField;
 use riss::geometry::curve::Curve;
@@ -145,6 +147,24 @@ pub fn differences(model: &Model, field: &dyn ExactField, result: &StaticResult)
         worst.1 = worst.1.max((s - field.stress(&model.material, *p)).norm());
     }
     worst
+}
+
+/// L2 norm of the displacement error over that of the exact displacement; `model.exact` must be known.
+pub fn displacement_error(model: &Model, settings: &Settings, result: &StaticResult) -> f64 {
+    let exact = model.exact.as_ref().expect("the field is known");
+    let discrete = discretize(model, settings, &mut Silent).expect("it was solved on this");
+    let parameters: Vec<Vector2> = result.nodes.iter().map(|n| n.parameters).collect();
+    let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
+    let (mut error, mut size) = (0.0, 0.0);
+    for point in &discrete.cells.points {
+        let at = point.position;
+        let found = discrete.approximation.evaluate(at, at, Derivatives::First, &mut around, &mut shape);
+        found.expect("it was solved on this");
+        let u = exact.displacement(&model.material, at);
+        error += point.weight * (shape.value(&parameters) - u).norm_squared();
+        size += point.weight * u.norm_squared();
+    }
+    (error / size).sqrt()
 }
 
 /// Slope of the least squares line through `(ln h, ln error)`.
