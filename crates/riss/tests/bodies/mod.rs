@@ -187,6 +187,17 @@ pub fn reaction(result: &StaticResult, name: &str) -> Vector2 {
     result.step.reactions.iter().find(|r| r.0 == name).unwrap_or_else(|| panic!("no reaction of {name}")).1
 }
 
+/// Displacement at any point, from the nodal parameters.
+pub fn displacement_at(model: &Model, settings: &Settings, result: &StaticResult, at: Vector2) -> Vector2 {
+    let discrete = discretize(model, settings, &mut Silent).expect("it was solved on this");
+    let parameters: Vec<Vector2> = result.nodes.iter().map(|n| n.parameters).collect();
+    let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
+    let sight = discrete.sight_at(model, at);
+    let found = discrete.approximation.evaluate(at, sight, Derivatives::First, &mut around, &mut shape);
+    found.expect("it was solved on this");
+    shape.value(&parameters)
+}
+
 /// Displacement of the vertex of the result nearest to a point.
 pub fn displacement_near(result: &StaticResult, at: (f64, f64)) -> Vector2 {
     result.fields.displacement[nearest(result, at)]

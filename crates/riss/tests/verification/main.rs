@@ -2,4 +2,9 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod constraint_methods;
+mod free_motion;
+mod loads;
 mod patch;
+mod round_bodies;
+mod supports;
