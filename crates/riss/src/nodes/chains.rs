@@ -196,21 +196,36 @@ fn least_pieces(curve: &Curve) -> usize {
     }
 }
 
-/// Parameters from `from` to `to` whose distances follow `step`, at least `least` pieces.
+/// Parameters from `from` to `to` whose distances follow `step`, at least `least` pieces; the same points if the curve
+/// is run backwards.
 fn subdivide(curve: &Curve, from: f64, to: f64, least: usize, step: &dyn Fn(Vector2, Vector2) -> f64) -> Vec<f64> {
-    // Cumulative ∫ ds/h with steps well below h; pieces of equal integral follow the grading.
-    let length = curve.length();
+    let (ahead, back) = (count_steps(curve, from, to, step), count_steps(curve, to, from, step));
+    let total = |table: &[(f64, f64)]| table[table.len() - 1].1;
+    let n = (0.5 * (total(&ahead) + total(&back)) - 1e-6).ceil().max(least as f64) as usize;
+    let (ahead, back) = (equal_shares(&ahead, n), equal_shares(&back, n));
+    let inner = (1..n).map(|i| 0.5 * (ahead[i] + back[n - i]));
+    [from].into_iter().chain(inner).chain([to]).collect()
+}
+
+/// Cumulative `∫ ds/h` along the curve, in steps well below h: pieces of equal integral follow the grading.
+fn count_steps(curve: &Curve, from: f64, to: f64, step: &dyn Fn(Vector2, Vector2) -> f64) -> Vec<(f64, f64)> {
+    let (length, sign) = (curve.length(), (to - from).signum());
     let (mut t, mut sum, mut table) = (from, 0.0, vec![(from, 0.0)]);
-    while t < to {
+    while (to - t) * sign > 0.0 {
         let h = step(curve.point(t), curve.tangent(t));
-        let dt = (0.1 * h / length).min(to - t).max(1e-12);
-        let middle = step(curve.point(t + 0.5 * dt), curve.tangent(t + 0.5 * dt));
-        sum += dt * length / middle;
-        t += dt;
+        let dt = (0.1 * h / length).min((to - t) * sign).max(1e-12);
+        let middle = t + 0.5 * sign * dt;
+        sum += dt * length / step(curve.point(middle), curve.tangent(middle));
+        t += sign * dt;
         table.push((t, sum));
     }
-    let n = (sum - 1e-6).ceil().max(least as f64) as usize;
-    let mut parameters = vec![from];
+    table
+}
+
+/// Parameters at the ends of `n` pieces of equal integral.
+fn equal_shares(table: &[(f64, f64)], n: usize) -> Vec<f64> {
+    let sum = table[table.len() - 1].1;
+    let mut parameters = vec![table[0].0];
     let mut k = 0;
     for i in 1..n {
         let target = sum * i as f64 / n as f64;
@@ -220,7 +235,7 @@ fn subdivide(curve: &Curve, from: f64, to: f64, least: usize, step: &dyn Fn(Vect
         let ((t0, s0), (t1, s1)) = (table[k], table[k + 1]);
         parameters.push(t0 + (t1 - t0) * (target - s0) / (s1 - s0));
     }
-    parameters.push(to);
+    parameters.push(table[table.len() - 1].0);
     parameters
 }
 

@@ -50,16 +50,18 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
                 let y = bounds.lower.y + step.y * j as f64;
                 (0..grid.nx).map(move |i| Vector2::new(bounds.lower.x + step.x * i as f64, y))
             });
-            add_free(&mut chains, model, &stars, positions, step.min());
+            let spacing = SpacingField::uniform(step.min());
+            add_free(&mut chains, model, &stars, positions, &spacing);
             let known = chains.positions.len();
-            chains.add_cracks(model, &SpacingField::uniform(step.min()), CrackNodes::WhereTheyStand, known);
+            chains.add_cracks(model, &spacing, CrackNodes::WhereTheyStand, known);
         }
         Layout::Listed(listed) => {
-            let spacing = SpacingField::uniform((model.domain.area() / listed.positions.len().max(1) as f64).sqrt());
+            let positions: Vec<Vector2> = listed.positions.iter().map(|p| Vector2::new(p[0], p[1])).collect();
+            let mean = (model.domain.area() / positions.len().max(1) as f64).sqrt();
+            let spacing = SpacingField::of_nodes(&positions, mean);
             chains.add_boundary(model, &|p, _| spacing.at(p));
             let stars = add_stars(&mut chains, model, settings.star.as_ref());
-            let positions = listed.positions.iter().map(|p| Vector2::new(p[0], p[1]));
-            add_free(&mut chains, model, &stars, positions, spacing.at(Vector2::zeros()));
+            add_free(&mut chains, model, &stars, positions.into_iter(), &spacing);
             let known = chains.positions.len();
             chains.add_cracks(model, &spacing, CrackNodes::WhereTheyStand, known);
         }
@@ -104,12 +106,13 @@ fn add_free(
     model: &Model,
     stars: &[Disk],
     positions: impl Iterator<Item = Vector2>,
-    spacing: f64,
+    spacing: &SpacingField,
 ) {
     for p in positions {
+        let h = spacing.at(p);
         let in_star = stars.iter().any(|(center, radius)| (p - center).norm() <= *radius);
-        if !in_star && model.domain.distance_to_boundary(p) > BOUNDARY_CLEARANCE * spacing && model.domain.contains(p) {
-            chains.push(p, true, spacing);
+        if !in_star && model.domain.distance_to_boundary(p) > BOUNDARY_CLEARANCE * h && model.domain.contains(p) {
+            chains.push(p, true, h);
         }
     }
 }

@@ -1,8 +1,13 @@
 //! How far apart nodes shall stand: smallest at tips, holes and thin ligaments, growing linearly away from them.
 
+use super::Nodes;
 use super::settings::Graded;
+use super::support::neighbor_distances;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::curve::Curve;
+use crate::geometry::obstacles::Obstacles;
 use crate::geometry::predicates::distance_to_segment;
+use crate::geometry::tree::BoxTree;
 use crate::math::{Vector2, cross, turn_left};
 use crate::model::Model;
 
@@ -31,6 +36,15 @@ pub struct SpacingField {
     sources: Vec<Source>,
     largest: f64,
     growth: f64,
+    given: Option<GivenNodes>,
+}
+
+/// Nodes at given places; each point takes the spacing of the nearest one.
+#[derive(Clone, Debug)]
+struct GivenNodes {
+    positions: Vec<Vector2>,
+    spacings: Vec<f64>,
+    tree: BoxTree<2>,
 }
 
 #[derive(Clone, Debug)]
@@ -48,13 +62,27 @@ enum Place {
 impl SpacingField {
     /// The same spacing everywhere.
     pub fn uniform(spacing: f64) -> Self {
-        Self { sources: vec![], largest: spacing, growth: 1.0 }
+        Self { sources: vec![], largest: spacing, growth: 1.0, given: None }
+    }
+
+    /// The spacing of given nodes: at each the distance to its third nearest, which is the edge length of a regular
+    /// grid, at its sides too, and 0.97 of the mean spacing of random nodes. `mean` is a typical spacing.
+    pub fn of_nodes(positions: &[Vector2], mean: f64) -> Self {
+        const NEIGHBOR: usize = 3;
+        if positions.len() <= NEIGHBOR {
+            return Self::uniform(mean);
+        }
+        let (positions, sights) = (positions.to_vec(), positions.to_vec());
+        let nodes = Nodes { positions, sights, support_radii: vec![] };
+        let spacings = neighbor_distances(&nodes, &Obstacles::new(vec![]), &vec![mean; nodes.len()], NEIGHBOR);
+        let tree = BoxTree::of_points(&nodes.positions);
+        Self { given: Some(GivenNodes { positions: nodes.positions, spacings, tree }), ..Self::uniform(mean) }
     }
 
     /// The spacing that the features of a model ask for, overruled by what the settings say.
     pub fn of_model(model: &Model, settings: &Graded) -> Self {
         let largest = settings.spacing.unwrap_or(BODY_FRACTION * model.domain.area().sqrt());
-        let mut field = Self { sources: vec![], largest, growth: settings.growth.unwrap_or(GROWTH) };
+        let mut field = Self { growth: settings.growth.unwrap_or(GROWTH), ..Self::uniform(largest) };
         field.add_tips(model, settings.tip_spacing);
         field.add_kinks(model);
         field.add_edges(model);
@@ -68,6 +96,9 @@ impl SpacingField {
 
     /// Spacing at a point [length].
     pub fn at(&self, p: Vector2) -> f64 {
+        if let Some(given) = &self.given {
+            return given.spacings[given.nearest(p, self.largest)];
+        }
         self.sources.iter().fold(self.largest, |h, source| {
             let distance = match &source.place {
                 Place::Point(q) => (p - q).norm(),
@@ -171,6 +202,27 @@ impl SpacingField {
                     self.add(Place::Point(p + inward * thickness), THICKNESS_FRACTION * thickness);
                 }
             }
+        }
+    }
+}
+
+impl GivenNodes {
+    /// The node nearest to a point; `mean` is a typical spacing.
+    fn nearest(&self, p: Vector2, mean: f64) -> usize {
+        // Dense clusters are asked first with a small box.
+        let mut reach = mean / 16.0;
+        loop {
+            let mut best = (f64::INFINITY, u32::MAX);
+            self.tree.visit(&Aabb::around(p, Vector2::repeat(reach)), |i| {
+                let found = ((self.positions[i as usize] - p).norm(), i);
+                if found < best {
+                    best = found;
+                }
+            });
+            if best.0 <= reach {
+                return best.1 as usize;
+            }
+            reach *= 2.0;
         }
     }
 }

@@ -1,0 +1,6 @@
+//! Properties that hold for any input, on random input that repeats.
+
+#[path = "../bodies/mod.rs"]
+mod bodies;
+mod invariance;
+mod shape_functions;

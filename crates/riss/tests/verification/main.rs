@@ -1,0 +1,10 @@
+//! Solutions against closed forms, each within a stated bound.
+
+#[path = "../bodies/mod.rs"]
+mod bodies;
+mod constraint_methods;
+mod free_motion;
+mod loads;
+mod patch;
+mod round_bodies;
+mod supports;
