@@ -3,5 +3,6 @@
 mod bodies;
 mod energy_release;
 mod near_tip;
+mod robustness;
 mod shear_edge_crack;
 mod tip_quantities;
