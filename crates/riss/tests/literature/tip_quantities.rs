@@ -14,13 +14,13 @@
 //! Tolerances: 0.5 % of |K| for domains of ten tip spacings and more; a contour sees the waves of the stress that a
 //! domain averages away. Domains of five tip spacings see the nodes one by one: there J errs by 0.51 %, K_II by 0.7 %, T by 0.9 %.
 
-use super::bodies::{near_tip_square, solve, tips};
+use super::bodies::{edge_crack, near_tip_square, pulled, rectangle, solve, tips};
 use riss::analysis::{Settings, TipRecord};
 use riss::exact::CrackTipField;
 use riss::fracture::{FractureSettings, JIntegral, TipDomainShape};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::Vector2;
-use riss::model::Model;
+use riss::model::{BodyForce, BoundarySupport, Direction, Model, PrescribedValue};
 
 const FIELD: CrackTipField = CrackTipField { tip: Vector2::new(0.0, 0.0), angle: 0.0, k1: 1.0, k2: 0.5, t_stress: 1.0 };
 const MATERIAL: Elasticity = Elasticity { young: 30e6, poisson: 0.3, plane: PlaneState::Strain };
@@ -81,4 +81,43 @@ fn domain_that_is_too_large_is_shrunk_and_said_so() {
         assert!((tip.radii[0] * 3.0 / tip.radii[2] - 1.0).abs() < 1e-12, "{:?}", tip.radii);
         assert!((tip.k1.unwrap() - FIELD.k1).abs() < 0.005, "{:?}", tip.k1);
     }
+}
+
+/// K of a plate under gravity that hangs from its top, from a domain of one radius.
+fn hanging_plate(radius: Option<f64>, weight: f64) -> TipRecord {
+    let crack = edge_crack(&[[0.0, 0.0], [0.5, 0.0]]);
+    let mut model = Model { cracks: vec![crack], ..Model::plain(rectangle([0.0, -0.5], [1.0, 0.5], &[])) };
+    model.body_force = Some(BodyForce([0.0.into(), (-weight).into()]));
+    for direction in [Direction::X, Direction::Y] {
+        model.supports.push(BoundarySupport { part: 2, direction, value: PrescribedValue::Field(0.0.into()) });
+    }
+    let mut settings = Settings::default();
+    settings.fracture.radii = radius.map(|r| vec![r]);
+    tips(&solve(&model, &settings))[0].clone()
+}
+
+#[test]
+fn body_forces_do_not_make_k_depend_on_the_domain() {
+    let small = hanging_plate(Some(0.08), 1.0);
+    let scale = small.k1.unwrap().hypot(small.k2.unwrap());
+    for radius in [Some(0.2), Some(0.3), Some(0.45), None] {
+        let other = hanging_plate(radius, 1.0);
+        for (a, b) in [(small.k1, other.k1), (small.k2, other.k2)] {
+            assert!((a.unwrap() - b.unwrap()).abs() < 0.005 * scale, "{radius:?}: {a:?} {b:?}");
+        }
+        let from_k = (1.0 - 0.3 * 0.3) * (other.k1.unwrap().powi(2) + other.k2.unwrap().powi(2));
+        assert!((other.j.unwrap() / from_k - 1.0).abs() < 0.005, "{radius:?}: J = {:?}, K gives {from_k}", other.j);
+    }
+}
+
+/// A free plate pulled at its top alone: the acceleration balances it.
+#[test]
+fn acceleration_does_not_make_k_depend_on_the_domain() {
+    let crack = edge_crack(&[[0.0, 0.0], [0.5, 0.0]]);
+    let mut model = pulled(rectangle([0.0, -0.5], [1.0, 0.5], &[]), vec![crack], 1.0);
+    model.loads.remove(0);
+    let mut settings = Settings::default();
+    settings.fracture.radii = Some(vec![0.1, 0.2, 0.3, 0.45]);
+    let tip = tips(&solve(&model, &settings))[0].clone();
+    assert!(tip.k_uncertainty.unwrap() < 0.005 * tip.k1.unwrap(), "{tip:?}");
 }
