@@ -6,8 +6,9 @@ use super::record::*;
 use super::settings::Settings;
 use crate::crack::TipId;
 use crate::error::{Error, Result};
-use crate::fracture::{SolutionField, TipIntegrals, TipView, tip_integrals};
-use crate::model::{Model, RigidMotion};
+use crate::fracture::{ForceAt, SolutionField, TipIntegrals, TipView, tip_integrals};
+use crate::math::Vector2;
+use crate::model::{FieldPoint, Model, RigidMotion};
 use crate::nodes::generate;
 use crate::system::solve::UNBALANCED;
 use crate::system::{ConstraintMethod, Discretization, Solution, assemble, solve};
@@ -158,7 +159,10 @@ fn evaluate_tip(
         }
     };
     let field = SolutionField { discrete, solution };
-    let found = tip_integrals(&view, &radii, &settings.fracture, &model.material, &field)?;
+    let force = |p: Vector2| body_force_at(model, solution, p);
+    let acts = model.body_force.is_some() || solution.imbalance > UNBALANCED;
+    let body_force = acts.then_some(&force as ForceAt);
+    let found = tip_integrals(&view, &radii, &settings.fracture, &model.material, body_force, &field)?;
     let mean = |get: fn(&TipIntegrals) -> f64| found.iter().map(get).sum::<f64>() / found.len() as f64;
     let spread = |get: fn(&TipIntegrals) -> f64| {
         let values = || found.iter().map(get);
@@ -173,4 +177,12 @@ fn evaluate_tip(
     record.status = if k1 > 0.0 || k1.abs() < 1e-6 * k2.abs() { TipStatus::Stationary } else { TipStatus::Closed };
     record.radii = radii;
     Ok(record)
+}
+
+/// All that acts inside the body: the model's body force, and what balances loads out of balance.
+fn body_force_at(model: &Model, solution: &Solution, p: Vector2) -> Vector2 {
+    let at = FieldPoint { position: p, normal: Vector2::zeros() };
+    let given =
+        model.body_force.as_ref().map_or(Vector2::zeros(), |f| Vector2::new(f.0[0].value(&at), f.0[1].value(&at)));
+    given + solution.balancing_force.at(p)
 }

@@ -1,12 +1,12 @@
 //! Stress intensity factors, T-stress and J at a tip by domain integrals [Moran1987].
 //!
 //! With `P_1j = W δ_1j - σ_ij u_i,1` in the tip frame, the energy release rate is
-//! `J = -∫ P_1j q,j dA + ∫_faces P_1j m_j q ds`, `m` out of the body. The interaction integral takes the mixed terms of
+//! `J = -∫ P_1j q,j dA - ∫ b_i u_i,1 q dA + ∫_faces P_1j m_j q ds`, `b` the body force, `m` out of the body. The interaction integral takes the mixed terms of
 //! the solution and an auxiliary field. That field is continued analytically up to the crack itself, however it bends
 //! behind the tip; what traction it then leaves on the faces stands in the face term.
 
-use super::settings::{FractureSettings, JIntegral};
-use super::tip_domain::{DomainPoint, TipView};
+use super::settings::{FractureSettings, JIntegral, TipDomainShape};
+use super::tip_domain::{DomainPoint, PLATEAU, TipView};
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{ShapeFunctions, Surroundings};
 use crate::error::Result;
@@ -58,7 +58,12 @@ impl GradientField for SolutionField<'_> {
     }
 }
 
+/// Force per volume at a point of the body, global axes [stress/length].
+pub type ForceAt<'a> = &'a (dyn Fn(Vector2) -> Vector2 + Sync);
+
 /// Evaluates every domain of a tip, smallest first.
+///
+/// - `body_force`: what acts inside the body, if anything
 ///
 /// # Errors
 /// Those of the field.
@@ -67,6 +72,7 @@ pub fn tip_integrals<F: GradientField>(
     radii: &[f64],
     settings: &FractureSettings,
     material: &Elasticity,
+    body_force: Option<ForceAt>,
     field: &F,
 ) -> Result<Vec<TipIntegrals>> {
     radii
@@ -79,10 +85,11 @@ pub fn tip_integrals<F: GradientField>(
             let faces = integrate(view, &domain.faces, material, field, |p, state| {
                 state.face_term(p.normal_local(view)).map(|v| v * p.weight * p.q.x)
             })?;
-            (0..4).for_each(|i| sum[i] += faces[i]);
+            let body = body_force_term(body_force, view, (settings.domain, radius, PLATEAU), material, field)?;
+            (0..4).for_each(|i| sum[i] += faces[i] + body[i]);
             let j = match settings.j_integral {
                 JIntegral::Domain => sum[3],
-                JIntegral::Contour => contour_j(view, radius, settings, material, field)?,
+                JIntegral::Contour => contour_j(view, radius, settings, material, body_force, field)?,
             };
             let young = material.effective_young();
             Ok(TipIntegrals { radius, k1: 0.5 * young * sum[0], k2: 0.5 * young * sum[1], t_stress: young * sum[2], j })
@@ -96,6 +103,7 @@ fn contour_j<F: GradientField>(
     radius: f64,
     settings: &FractureSettings,
     material: &Elasticity,
+    body_force: Option<ForceAt>,
     field: &F,
 ) -> Result<f64> {
     let contour = view.contour(settings.domain, radius);
@@ -106,7 +114,25 @@ fn contour_j<F: GradientField>(
     let inside = integrate(view, &faces, material, field, |p, state| {
         state.face_term(p.normal_local(view)).map(|v| v * p.weight)
     })?;
-    Ok(around[3] + inside[3])
+    let body = body_force_term(body_force, view, (settings.domain, radius, 1.0), material, field)?;
+    Ok(around[3] + inside[3] + body[3])
+}
+
+/// What the body force adds over a domain of given shape, radius and plateau of q.
+fn body_force_term<F: GradientField>(
+    body_force: Option<ForceAt>,
+    view: &TipView,
+    (shape, radius, plateau): (TipDomainShape, f64, f64),
+    material: &Elasticity,
+    field: &F,
+) -> Result<Integrals> {
+    let Some(force) = body_force else { return Ok([0.0; 4]) };
+    let points = view.interior(shape, radius, plateau);
+    integrate(view, &points, material, field, |p, state| {
+        let force = force(p.position);
+        let local = Vector2::new(force.dot(&view.frame.x1()), force.dot(&view.frame.x2()));
+        state.work_along(local).map(|v| -v * p.weight * p.q.x)
+    })
 }
 
 impl DomainPoint {
@@ -173,6 +199,12 @@ impl State {
         [mixed[0], mixed[1], mixed[2], own]
     }
 
+    /// `b_i u_i,1`.
+    fn work_along(&self, force: Vector2) -> Integrals {
+        let mixed = self.auxiliary.map(|(gradient, _)| force.dot(&gradient.column(0)));
+        [mixed[0], mixed[1], mixed[2], force.dot(&self.gradient.column(0))]
+    }
+
     /// `P_1j m_j` on a face without traction.
     fn face_term(&self, m: Vector2) -> Integrals {
         let own = 0.5 * self.stress.dot(&self.gradient) * m.x;
@@ -188,7 +220,6 @@ mod tests {
     use super::*;
     use crate::crack::{CrackPath, End, TipFrame, TipId};
     use crate::exact::{CrackTipField, ExactField};
-    use crate::fracture::TipDomainShape;
     use crate::material::PlaneState;
 
     struct Exact(CrackTipField, Elasticity);
@@ -220,7 +251,7 @@ mod tests {
         for domain in [TipDomainShape::Disc, TipDomainShape::Square] {
             let settings = FractureSettings { domain, ..FractureSettings::default() };
             let field = Exact(exact, material);
-            let found = tip_integrals(&view, &[0.2, 0.9], &settings, &material, &field).unwrap();
+            let found = tip_integrals(&view, &[0.2, 0.9], &settings, &material, None, &field).unwrap();
             let j = (1.3f64 * 1.3 + 0.7 * 0.7) / material.effective_young();
             for t in found {
                 assert!((t.k1 - 1.3).abs() < 1e-6, "{domain:?} {t:?}");
@@ -228,7 +259,7 @@ mod tests {
                 assert!((t.t_stress - 0.4).abs() < 1e-5, "{domain:?} {t:?}");
                 assert!((t.j - j).abs() < 1e-6, "{domain:?} {t:?}");
             }
-            let contour = contour_j(&view, 0.5, &settings, &material, &field).unwrap();
+            let contour = contour_j(&view, 0.5, &settings, &material, None, &field).unwrap();
             assert!((contour - j).abs() < 1e-6, "{contour} {j}");
         }
     }

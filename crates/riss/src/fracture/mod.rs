@@ -6,6 +6,6 @@ pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;
 
-pub use interaction_integral::{GradientField, SolutionField, TipIntegrals, tip_integrals};
+pub use interaction_integral::{ForceAt, GradientField, SolutionField, TipIntegrals, tip_integrals};
 pub use settings::{FractureSettings, JIntegral, TipDomainShape};
 pub use tip_domain::TipView;

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 /// Sizes of the automatic domains, over that of the largest one that fits.
 const AUTOMATIC_SIZES: [f64; 3] = [0.5, 0.65, 0.8];
 /// Share of a domain's radius in which q is one and its gradient zero.
-const PLATEAU: f64 = 0.35;
+pub const PLATEAU: f64 = 0.35;
 /// Points across the ring and around it.
 const RADIAL_POINTS: usize = 12;
 const ANGULAR_POINTS: usize = 96;
@@ -43,7 +43,7 @@ pub struct DomainPoint {
     pub r: f64,
     /// Angle from the direction ahead, continued along a bent crack so that only the crack itself cuts it [rad].
     pub theta: f64,
-    /// Gradient of q, global axes [1/length]; on faces q itself along the first axis.
+    /// Gradient of q, global axes [1/length]; on faces and for body forces q itself along the first axis.
     pub q: Vector2,
     /// Integration weight [length²], on faces and contours [length].
     pub weight: f64,
@@ -179,6 +179,26 @@ impl TipView {
             p
         };
         domain.area.into_iter().map(line_weight).collect()
+    }
+
+    /// Points all over the domain, with q along the first axis: one up to the share `plateau` of the way out, then
+    /// falling to zero.
+    pub fn interior(&self, shape: TipDomainShape, radius: f64, plateau: f64) -> Vec<DomainPoint> {
+        let mut domain = TipDomain { radius, ..TipDomain::default() };
+        let (around, across) = (gauss_legendre(ANGULAR_POINTS / 8), gauss_legendre(RADIAL_POINTS));
+        for (from, to) in [(0.0, plateau), (plateau, 1.0)].into_iter().filter(|p| p.0 < p.1) {
+            for &(s, ws) in &across {
+                let s = from + (to - from) * s;
+                for octant in 0..8 {
+                    for &(t, wt) in &around {
+                        self.add_area(&mut domain, shape, s, ws * (to - from), (octant as f64 + t) / 8.0, wt / 8.0);
+                        let q = if s <= plateau { 1.0 } else { (1.0 - s) / (1.0 - plateau) };
+                        domain.area.last_mut().expect("it was just added").q = Vector2::new(q, 0.0);
+                    }
+                }
+            }
+        }
+        domain.area
     }
 
     /// Adds the point at share `s` of the way out and share `turn` of the way around, from the lower to the upper face.

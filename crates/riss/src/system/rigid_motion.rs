@@ -132,6 +132,21 @@ fn support_rows(model: &Model, discrete: &Discretization) -> Result<Vec<(u32, Ve
     Ok(rows)
 }
 
+/// Body force that holds a body whose loads do not balance: `uniform + turning · (x - center)⊥` [stress/length].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BalancingForce {
+    center: Vector2,
+    uniform: Vector2,
+    turning: f64,
+}
+
+impl BalancingForce {
+    /// Force per volume at a point [stress/length].
+    pub fn at(&self, p: Vector2) -> Vector2 {
+        self.uniform + turn_left(p - self.center) * self.turning
+    }
+}
+
 /// Mean rigid motion of the body, and the forces that balance its loads [CPM, section 4.2].
 pub struct MeanMotion {
     center: Vector2,
@@ -170,23 +185,28 @@ impl MeanMotion {
         Ok(result)
     }
 
-    /// Adds the body force (a combination of rigid motions) that balances a load vector; returns how large the
-    /// imbalance was, relative to the loads.
-    pub fn balance(&self, positions: &[Vector2], load: &mut [f64]) -> f64 {
+    /// Adds the body force (a combination of rigid motions) that balances a load vector; returns it, and how large
+    /// the imbalance was, relative to the loads.
+    pub fn balance(&self, positions: &[Vector2], load: &mut [f64]) -> (BalancingForce, f64) {
         let (mut resultant, mut total) = (Vector3::zeros(), 0.0);
         for (i, x) in positions.iter().enumerate() {
             let f = Vector2::new(load[2 * i], load[2 * i + 1]);
             resultant += Vector3::from(motions(*x, self.center, self.size).map(|m| m.dot(&f)));
             total += f.norm();
         }
-        let Some(inverse) = self.mass.try_inverse() else { return 0.0 };
+        let Some(inverse) = self.mass.try_inverse() else { return (BalancingForce::default(), 0.0) };
         let factors = inverse * -resultant;
+        let force = BalancingForce {
+            center: self.center,
+            uniform: Vector2::new(factors[0], factors[1]),
+            turning: factors[2] / self.size,
+        };
         for (i, (mass, moment)) in self.moments.iter().enumerate() {
-            let f = Vector2::new(factors[0], factors[1]) * *mass + turn_left(*moment) * (factors[2] / self.size);
+            let f = force.uniform * *mass + turn_left(*moment) * force.turning;
             load[2 * i] += f.x;
             load[2 * i + 1] += f.y;
         }
-        if total > 0.0 { resultant.norm() / total } else { 0.0 }
+        (force, if total > 0.0 { resultant.norm() / total } else { 0.0 })
     }
 
     /// Takes the mean displacement and rotation out of the nodal parameters.

@@ -6,7 +6,7 @@ use super::discretization::Discretization;
 use super::galerkin::LinearSystem;
 use super::linear_solver::{Factor, MIXED_FROM, solve_with_multipliers};
 use super::ordering::nested_dissection;
-use super::rigid_motion::{MeanMotion, check_held};
+use super::rigid_motion::{BalancingForce, MeanMotion, check_held};
 use super::settings::{ConstraintMethod, LinearSolver};
 use crate::error::{Error, Result};
 use crate::math::Vector2;
@@ -28,6 +28,8 @@ pub struct Solution {
     pub point_forces: Vec<f64>,
     /// Relative residual of the linear system.
     pub residual: f64,
+    /// Body force that balances the loads, where only mean rigid motion is removed.
+    pub balancing_force: BalancingForce,
     /// Relative imbalance of the loads, where only mean rigid motion is removed.
     pub imbalance: f64,
     /// Unknowns of the system, multipliers included.
@@ -54,7 +56,7 @@ pub fn solve(
     };
     let mut result = Solution { n_unknowns: system.load.len(), ..Solution::default() };
     if let Some(mean) = &mean {
-        result.imbalance = mean.balance(positions, &mut system.load);
+        (result.balancing_force, result.imbalance) = mean.balance(positions, &mut system.load);
         pin(&mut system.matrix, positions);
     }
     let points = point_rows(model, discrete)?;

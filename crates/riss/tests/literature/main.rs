@@ -1,0 +1,8 @@
+//! Crack problems of the literature and of closed form, solved through the public interface.
+
+mod bodies;
+mod energy_release;
+mod near_tip;
+mod robustness;
+mod shear_edge_crack;
+mod tip_quantities;
