@@ -1,8 +1,14 @@
 //! Expressions of the case file: `2*y^2 - sin(pi*x)`, compiled once, evaluated without allocation.
 //!
-//! Precedence as on paper: `-x^2` is `-(x^2)`, `2^3^2` is `2^9`.
+//! Precedence as on paper: `-x^2` is `-(x^2)`, `2^3^2` is `2^9`. The grammar is `expression.pest`. A ready evaluator such
+//! as exmex would do, but binds a minus sign tighter than `^` and cannot read `1e-1`.
 
 use crate::model::FieldPoint;
+use pest::Parser;
+use pest::error::{Error, ErrorVariant, InputLocation};
+use pest::iterators::{Pair, Pairs};
+use pest::pratt_parser::{Assoc, Op, PrattParser};
+use std::sync::LazyLock;
 
 type Unary = fn(f64) -> f64;
 type Binary = fn(f64, f64) -> f64;
@@ -36,6 +42,20 @@ const BINARY: [(&str, Binary); 4] =
 const MAX_LENGTH: usize = 1000;
 /// Nesting and intermediate values that are provided for.
 const MAX_DEPTH: usize = 32;
+
+/// From the loosest operator to the tightest.
+static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
+    let (left, right) = (Assoc::Left, Assoc::Right);
+    PrattParser::new()
+        .op(Op::infix(Rule::add, left) | Op::infix(Rule::subtract, left))
+        .op(Op::infix(Rule::multiply, left) | Op::infix(Rule::divide, left))
+        .op(Op::prefix(Rule::signs))
+        .op(Op::infix(Rule::power, right))
+});
+
+#[derive(pest_derive::Parser)]
+#[grammar = "case/expression.pest"]
+struct Grammar;
 
 /// A compiled expression.
 #[derive(Clone, Debug)]
@@ -73,16 +93,14 @@ impl Expression {
         if text.len() > MAX_LENGTH {
             return Err(BadExpression::new(format!("an expression has at most {MAX_LENGTH} characters")));
         }
-        let mut parser = Parser { text, at: 0, depth: 0, steps: vec![] };
-        parser.sum()?;
-        if !parser.rest().is_empty() {
-            return Err(parser.unexpected("an operator"));
+        // Before the parser sees it, because it calls itself for every parenthesis.
+        if nesting(text) > MAX_DEPTH {
+            return Err(too_deep());
         }
-        let expression = Self { steps: parser.steps };
-        match expression.stack_depth() <= MAX_DEPTH {
-            true => Ok(expression),
-            false => Err(BadExpression::new("this expression is nested too deeply")),
-        }
+        let mut whole = Grammar::parse(Rule::whole, text).map_err(|e| unexpected(text, &e))?;
+        let sum = whole.next().ok_or_else(too_deep)?;
+        let expression = Self { steps: compile(sum.into_inner(), 0)? };
+        if expression.stack_depth() > MAX_DEPTH { Err(too_deep()) } else { Ok(expression) }
     }
 
     /// The value, if it depends on nothing.
@@ -138,183 +156,138 @@ fn sign(v: f64) -> f64 {
     if v == 0.0 { 0.0 } else { v.signum() }
 }
 
-struct Parser<'t> {
-    text: &'t str,
-    at: usize,
-    depth: usize,
-    steps: Vec<Step>,
+/// Greatest number of parentheses that are open at once.
+fn nesting(text: &str) -> usize {
+    let (mut open, mut deepest) = (0usize, 0);
+    for c in text.bytes() {
+        match c {
+            b'(' => open += 1,
+            b')' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(open);
+    }
+    deepest
 }
 
-impl<'t> Parser<'t> {
-    /// What is left, blanks skipped.
-    fn rest(&mut self) -> &'t str {
-        let rest = self.text[self.at..].trim_start();
-        self.at = self.text.len() - rest.len();
-        rest
-    }
-
-    fn take(&mut self, symbol: &str) -> bool {
-        let found = self.rest().starts_with(symbol);
-        if found {
-            self.at += symbol.len();
+/// The steps of a sum inside `depth` others.
+fn compile(sum: Pairs<Rule>, depth: usize) -> Result<Vec<Step>, BadExpression> {
+    // Powers nest to the right.
+    let (mut powers, mut most) = (0, 0);
+    for token in sum.clone() {
+        match token.as_rule() {
+            Rule::power => powers += 1,
+            Rule::add | Rule::subtract | Rule::multiply | Rule::divide => powers = 0,
+            _ => {}
         }
-        found
+        most = most.max(powers);
     }
-
-    fn binary(&mut self, f: Binary) {
-        self.steps.push(Step::Binary(f));
+    let depth = depth + 1 + most;
+    if depth > MAX_DEPTH {
+        return Err(too_deep());
     }
-
-    /// `term + term - term`
-    fn sum(&mut self) -> Result<(), BadExpression> {
-        self.depth += 1;
-        if self.depth > MAX_DEPTH {
-            return Err(BadExpression::new("this expression is nested too deeply"));
-        }
-        self.product()?;
-        loop {
-            if self.take("+") {
-                self.product()?;
-                self.binary(|a, b| a + b);
-            } else if self.take("-") {
-                self.product()?;
-                self.binary(|a, b| a - b);
-            } else {
-                self.depth -= 1;
-                return Ok(());
+    PRECEDENCE
+        .map_primary(|operand| compile_operand(operand, depth))
+        .map_prefix(|signs, steps| {
+            let mut steps = steps?;
+            if signs.as_str().matches('-').count() % 2 == 1 {
+                steps.push(Step::Negate);
             }
-        }
-    }
+            Ok(steps)
+        })
+        .map_infix(|left, operator, right| {
+            let mut steps = left?;
+            steps.extend(right?);
+            steps.push(Step::Binary(match operator.as_rule() {
+                Rule::add => |a, b| a + b,
+                Rule::subtract => |a, b| a - b,
+                Rule::multiply => |a, b| a * b,
+                Rule::divide => |a, b| a / b,
+                Rule::power => f64::powf,
+                rule => unreachable!("{rule:?} is no operator of the grammar"),
+            }));
+            Ok(steps)
+        })
+        .parse(sum)
+}
 
-    /// `factor * factor / factor`
-    fn product(&mut self) -> Result<(), BadExpression> {
-        self.factor()?;
-        loop {
-            if self.take("*") {
-                self.factor()?;
-                self.binary(|a, b| a * b);
-            } else if self.take("/") {
-                self.factor()?;
-                self.binary(|a, b| a / b);
-            } else {
-                return Ok(());
-            }
-        }
+fn compile_operand(operand: Pair<Rule>, depth: usize) -> Result<Vec<Step>, BadExpression> {
+    match operand.as_rule() {
+        Rule::number => match operand.as_str().parse() {
+            Ok(value) => Ok(vec![Step::Number(value)]),
+            Err(_) => Err(BadExpression::new(format!("not a number: `{}`", operand.as_str()))),
+        },
+        Rule::name => variable(operand.as_str()).map(|step| vec![step]),
+        Rule::call => call(operand.into_inner(), depth),
+        Rule::group => compile(arguments(operand.into_inner()).next().ok_or_else(too_deep)?, depth),
+        rule => unreachable!("{rule:?} is no operand of the grammar"),
     }
+}
 
-    /// `-factor`, `atom`, or `atom ^ factor`
-    fn factor(&mut self) -> Result<(), BadExpression> {
-        let mut negative = false;
-        loop {
-            if self.take("-") {
-                negative = !negative;
-            } else if !self.take("+") {
-                break;
-            }
-        }
-        self.atom()?;
-        if self.take("^") || self.take("**") {
-            self.depth += 1;
-            if self.depth > MAX_DEPTH {
-                return Err(BadExpression::new("this expression is nested too deeply"));
-            }
-            self.factor()?;
-            self.depth -= 1;
-            self.binary(f64::powf);
-        }
-        if negative {
-            self.steps.push(Step::Negate);
-        }
-        Ok(())
+fn variable(name: &str) -> Result<Step, BadExpression> {
+    if let Some(k) = VARIABLES.iter().position(|v| *v == name) {
+        Ok(Step::Variable(k))
+    } else if ["pi", "PI", "π"].contains(&name) {
+        Ok(Step::Number(std::f64::consts::PI))
+    } else {
+        let names = VARIABLES.into_iter().chain(["pi"]).collect();
+        Err(unknown(format!("unknown variable `{name}`"), name, names))
     }
+}
 
-    /// A number, a variable, a function with its arguments, or a sum in parentheses.
-    fn atom(&mut self) -> Result<(), BadExpression> {
-        let rest = self.rest();
-        let first = rest.chars().next().unwrap_or(' ');
-        if first.is_ascii_digit() || first == '.' {
-            return self.number(rest);
-        }
-        if first.is_alphabetic() || first == '_' {
-            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-            self.at += end;
-            return self.name(&rest[..end]);
-        }
-        if !self.take("(") {
-            return Err(self.unexpected("a number, a name or a parenthesis"));
-        }
-        self.sum()?;
-        self.close()
+/// A function: its name, then its arguments.
+fn call(mut parts: Pairs<Rule>, depth: usize) -> Result<Vec<Step>, BadExpression> {
+    let name = parts.next().map_or("", |p| p.as_str());
+    let (step, wanted) = if let Some((_, f)) = UNARY.iter().find(|f| f.0 == name) {
+        (Step::Unary(*f), 1)
+    } else if let Some((_, f)) = BINARY.iter().find(|f| f.0 == name) {
+        (Step::Binary(*f), 2)
+    } else {
+        let names = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0)).collect();
+        return Err(unknown(format!("unknown function `{name}`"), name, names));
+    };
+    let mut steps = vec![];
+    let mut n = 0;
+    for argument in arguments(parts) {
+        steps.extend(compile(argument, depth)?);
+        n += 1;
     }
+    if n != wanted {
+        let plural = if wanted == 1 { "" } else { "s" };
+        return Err(BadExpression::new(format!("`{name}` takes {wanted} argument{plural}, here it has {n}")));
+    }
+    steps.push(step);
+    Ok(steps)
+}
 
-    fn close(&mut self) -> Result<(), BadExpression> {
-        if self.take(")") { Ok(()) } else { Err(self.unexpected("a closing parenthesis")) }
-    }
+/// The sums between parentheses; the closing one is a rule of its own to be named in messages.
+fn arguments(parts: Pairs<Rule>) -> impl Iterator<Item = Pairs<Rule>> {
+    parts.filter(|p| p.as_rule() == Rule::sum).map(Pair::into_inner)
+}
 
-    fn number(&mut self, rest: &str) -> Result<(), BadExpression> {
-        let digits = |s: &str| s.len() - s.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-        let mut end = digits(rest);
-        if rest[end..].starts_with('.') {
-            end += 1 + digits(&rest[end + 1..]);
-        }
-        if let Some(exponent) = rest[end..].strip_prefix(['e', 'E']) {
-            let sign = usize::from(exponent.starts_with(['+', '-']));
-            let n = digits(&exponent[sign..]);
-            end += if n > 0 { 1 + sign + n } else { 0 };
-        }
-        match rest[..end].parse() {
-            Ok(value) => {
-                self.at += end;
-                self.steps.push(Step::Number(value));
-                Ok(())
-            }
-            Err(_) => Err(self.unexpected("a number")),
-        }
-    }
+fn too_deep() -> BadExpression {
+    BadExpression::new("this expression is nested too deeply")
+}
 
-    fn name(&mut self, name: &str) -> Result<(), BadExpression> {
-        if self.rest().starts_with('(') {
-            return self.call(name);
-        }
-        if let Some(k) = VARIABLES.iter().position(|v| *v == name) {
-            self.steps.push(Step::Variable(k));
-        } else if ["pi", "PI", "π"].contains(&name) {
-            self.steps.push(Step::Number(std::f64::consts::PI));
-        } else {
-            let names = VARIABLES.into_iter().chain(["pi"]).collect();
-            return Err(unknown(format!("unknown variable `{name}`"), name, names));
-        }
-        Ok(())
-    }
-
-    fn call(&mut self, name: &str) -> Result<(), BadExpression> {
-        let unary = UNARY.iter().find(|f| f.0 == name);
-        let binary = BINARY.iter().find(|f| f.0 == name);
-        if unary.is_none() && binary.is_none() {
-            let names = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0)).collect();
-            return Err(unknown(format!("unknown function `{name}`"), name, names));
-        }
-        self.take("(");
-        self.sum()?;
-        if let Some((_, f)) = unary {
-            self.steps.push(Step::Unary(*f));
-        }
-        if let Some((_, f)) = binary {
-            if !self.take(",") {
-                return Err(self.unexpected("a comma and a second argument"));
-            }
-            self.sum()?;
-            self.binary(*f);
-        }
-        self.close()
-    }
-
-    fn unexpected(&mut self, wanted: &str) -> BadExpression {
-        let rest = self.rest();
-        let found = rest.chars().next().map_or("the end".to_string(), |c| format!("`{c}`"));
-        let position = self.text[..self.at].chars().count() + 1;
-        BadExpression::new(format!("not an expression: expected {wanted}, found {found} at character {position}"))
-    }
+/// What was expected and what is there.
+fn unexpected(text: &str, error: &Error<Rule>) -> BadExpression {
+    let at = match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+    };
+    let expected: &[Rule] = match &error.variant {
+        ErrorVariant::ParsingError { positives, .. } => positives,
+        ErrorVariant::CustomError { .. } => &[],
+    };
+    let wanted = if expected.contains(&Rule::close) {
+        "a closing parenthesis"
+    } else if expected.contains(&Rule::EOI) {
+        "an operator"
+    } else {
+        "a number, a name or a parenthesis"
+    };
+    let found = text[at..].chars().next().map_or("the end".to_string(), |c| format!("`{c}`"));
+    let position = text[..at].chars().count() + 1;
+    BadExpression::new(format!("not an expression: expected {wanted}, found {found} at character {position}"))
 }
 
 fn unknown(message: String, name: &str, names: Vec<&'static str>) -> BadExpression {
@@ -344,6 +317,8 @@ mod tests {
             ("(1 + 2)*(3 - 5)", -6.0),
             ("--x + +y", 5.0),
             ("-(x)", -2.0),
+            ("2^-1^2*4 - x^-y/2", 1.9375),
+            ("- - +x ^ 2", 4.0),
         ] {
             assert_eq!(value(text), expected, "{text}");
         }
@@ -390,8 +365,33 @@ mod tests {
         ] {
             assert!(Expression::parse(text).is_err(), "{text}");
         }
+        for (text, message) in [
+            ("2*(x", "expected a closing parenthesis, found the end at character 5"),
+            ("(x y)", "expected a closing parenthesis, found `y` at character 4"),
+            ("é", "unknown variable `é`"),
+            ("é;", "expected an operator, found `;` at character 2"),
+            ("2x", "expected an operator, found `x` at character 2"),
+            ("x)", "expected an operator, found `)` at character 2"),
+            ("1 + ", "expected a number, a name or a parenthesis, found the end at character 5"),
+            ("2*()", "expected a number, a name or a parenthesis, found `)` at character 4"),
+            ("sin()", "expected a number, a name or a parenthesis, found `)` at character 5"),
+            ("min(1)", "`min` takes 2 arguments, here it has 1"),
+            ("sin(1, 2)", "`sin` takes 1 argument, here it has 2"),
+            ("log(1)", "unknown function `log`"),
+        ] {
+            let found = Expression::parse(text).unwrap_err().message;
+            assert!(found.ends_with(message), "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn no_text_overflows_the_stack() {
         for text in ["(".repeat(900), "1^".repeat(400) + "1", "1+(".repeat(300), "-".repeat(999), "1".repeat(1001)] {
             assert!(Expression::parse(&text).is_err());
         }
+        let nested = |n: usize| "sin(".repeat(n) + "1" + &")".repeat(n);
+        assert!(Expression::parse(&nested(31)).is_ok() && Expression::parse(&nested(32)).is_err());
+        assert_eq!(value(&("-".repeat(901) + "x")), -2.0);
+        assert!(Expression::parse(&("x^2 + ".repeat(100) + "1")).is_ok());
     }
 }

@@ -1,11 +1,12 @@
 //! From a model and the settings to points and triangles.
 
+use super::budget;
 use super::chains::{Chains, CrackNodes};
 use super::fill::fill;
 use super::settings::{Layout, NodeSettings, Star};
 use super::spacing::SpacingField;
 use super::triangulation::{Triangulation, inner_triangles};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::{Vector2, direction};
 use crate::model::Model;
 use std::f64::consts::{PI, TAU};
@@ -35,6 +36,7 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
     match &settings.layout {
         Layout::Graded(graded) => {
             let spacing = SpacingField::of_model(model, graded);
+            budget::check(&model.domain, &spacing)?;
             chains.add_boundary(model, &|p, _| spacing.at(p));
             let stars = add_stars(&mut chains, model, settings.star.as_ref());
             let known = chains.positions.len();
@@ -123,9 +125,7 @@ fn fill_irregular(chains: &mut Chains, model: &Model, spacing: &SpacingField, st
     let inside = |p: Vector2| model.domain.contains(p);
     let new = fill(&given, spacing, MAX_NODES, &inside);
     if given.len() + new.len() >= MAX_NODES {
-        return Err(Error::NodeGeneration {
-            reason: format!("the spacing asks for more than {MAX_NODES} nodes; choose a larger one"),
-        });
+        return Err(budget::too_many(None));
     }
     for (p, h) in new {
         if stars.iter().all(|(center, radius)| (p - center).norm() > *radius + 0.5 * h) {

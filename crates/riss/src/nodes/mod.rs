@@ -1,9 +1,10 @@
 //! Nodes: where they stand and how far they reach.
 //!
-//! [`generation`] places points along [`chains`] of boundary and cracks, [`fill`]s the body at the spacing of a
+//! [`generation`] places points, if their [`budget`] allows, along [`chains`] of boundary and cracks, [`fill`]s the body at the spacing of a
 //! [`spacing::SpacingField`] and joins them to a [`triangulation`]; every sector of material around a point with a
 //! node gets one: nodes on a crack are split [EFG, section 2.2].
 
+mod budget;
 pub mod chains;
 pub mod fill;
 pub mod generation;

@@ -108,6 +108,16 @@ impl SpacingField {
         })
     }
 
+    /// Spacing where no feature asks for a smaller one [length].
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// Greatest slope of the spacing.
+    pub fn growth(&self) -> f64 {
+        self.growth
+    }
+
     fn add(&mut self, place: Place, spacing: f64) {
         if spacing < self.largest {
             self.sources.push(Source { place, spacing });

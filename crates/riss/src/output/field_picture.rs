@@ -67,6 +67,11 @@ impl FieldQuantity {
 /// # Errors
 /// What the system says; `InvalidData` if the arrays of the fields do not fit together.
 pub fn write_field_picture(path: &Path, result: &StaticResult, quantity: FieldQuantity) -> io::Result<()> {
+    write_whole(path, field_picture(result, quantity)?.as_bytes())
+}
+
+/// The picture itself.
+pub(super) fn field_picture(result: &StaticResult, quantity: FieldQuantity) -> io::Result<String> {
     super::fields::check(&result.fields)?;
     let mut picture = String::new();
     for halvings in 0..4 {
@@ -75,7 +80,7 @@ pub fn write_field_picture(path: &Path, result: &StaticResult, quantity: FieldQu
             break;
         }
     }
-    write_whole(path, picture.as_bytes())
+    Ok(picture)
 }
 
 fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) -> String {
@@ -105,7 +110,7 @@ fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) ->
     svg.paths(
         before,
         LineEnd::Closed,
-        "fill=\"none\" stroke=\"#999999\" stroke-width=\"6\" stroke-dasharray=\"40 40\"",
+        "fill=\"none\" stroke=\"#aaaaaa\" stroke-width=\"5\"",
     );
     svg.paths(outline, LineEnd::Closed, "fill=\"none\" stroke=\"#333333\" stroke-width=\"8\"");
     let faces = fields.crack_faces.iter().flat_map(|c| [(&c.positions, &c.left), (&c.positions, &c.right)]);

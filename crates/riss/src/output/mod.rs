@@ -29,6 +29,9 @@ use whole_file::write_whole;
 /// Name of the file that is written last: where it stands, all others are complete.
 pub const RESULTS_FILE: &str = "results.json";
 
+/// Name of the picture of the von Mises stress on the deformed body.
+pub const PICTURE_FILE: &str = "deformed.svg";
+
 /// What the run knows beside the result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunInfo {
@@ -50,7 +53,7 @@ pub struct RunInfo {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputOptions {
-    /// Displacement, stress and strain over the body, and the crack faces, for ParaView.
+    /// Displacement, stress and strain over the body, and the crack faces, for ParaView; a picture of them.
     pub fields: bool,
     /// Nodes with support radius and nodal parameters, for ParaView.
     pub nodes: bool,
@@ -80,6 +83,10 @@ pub fn write_results(
     }
     let mut files = vec![("history.csv".to_string(), history::history_csv(std::slice::from_ref(&result.step))?)];
     files.extend(fields::field_files(result, options)?);
+    if options.fields {
+        let picture = field_picture::field_picture(result, FieldQuantity::VonMises)?;
+        files.push((PICTURE_FILE.into(), picture.into_bytes()));
+    }
     let mut results = Results::new(info, result);
     results.files = files.iter().map(|f| f.0.clone()).collect();
     files.push((RESULTS_FILE.into(), results.to_json().into_bytes()));

@@ -15,6 +15,10 @@ const ON_BOUNDARY: f64 = 1e-6;
 const OVERHANG: f64 = 0.05;
 /// Turn of an arc in one segment [degrees].
 const ARC_STEP: f64 = 2.0;
+/// The same at a tip: K feels the direction of the last segment, which is off the arc's by half of its turn.
+const TIP_STEP: f64 = 0.2;
+/// Growth of the turn from segment to segment away from a tip.
+const STEP_GROWTH: f64 = 1.4;
 /// More points in one crack are refused.
 const MAX_POINTS: usize = 20_000;
 
@@ -30,7 +34,7 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
             report.error(format!("{key}.name"), format!("there is already a crack named `{name}`"));
         }
         names.push(name.clone());
-        let Some((vertices, key)) = vertices(crack, &key, size, report) else { continue };
+        let Some((vertices, key)) = vertices(crack, &key, domain, report) else { continue };
         let mut builder = Builder { domain, size, key, vertices, is_tip: [true; 2] };
         if builder.is_simple(report) && builder.place_ends(report) && builder.is_inside(report) {
             let [start_is_tip, end_is_tip] = builder.is_tip;
@@ -41,14 +45,14 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
     paths.into_iter().map(|p| p.1).collect()
 }
 
-fn vertices(crack: &schema::Crack, key: &str, size: f64, report: &mut Report) -> Option<(Vec<Vector2>, String)> {
+fn vertices(crack: &schema::Crack, key: &str, domain: &Domain, report: &mut Report) -> Option<(Vec<Vector2>, String)> {
     match (&crack.path, &crack.arc) {
         (Some(path), None) if path.len() > MAX_POINTS => {
             report.error(format!("{key}.path"), format!("{} points", path.len())).allow(format!("up to {MAX_POINTS}"));
             None
         }
         (Some(path), None) => Some((path.iter().map(|p| vector(*p)).collect(), format!("{key}.path"))),
-        (None, Some(arc)) => Some((arc_vertices(arc, &format!("{key}.arc"), size, report)?, format!("{key}.arc"))),
+        (None, Some(arc)) => Some((arc_vertices(arc, &format!("{key}.arc"), domain, report)?, format!("{key}.arc"))),
         _ => {
             report.error(key, "a crack has one shape").allow("path or arc");
             None
@@ -56,31 +60,59 @@ fn vertices(crack: &schema::Crack, key: &str, size: f64, report: &mut Report) ->
     }
 }
 
-fn arc_vertices(arc: &schema::CrackArc, key: &str, size: f64, report: &mut Report) -> Option<Vec<Vector2>> {
+fn arc_vertices(arc: &schema::CrackArc, key: &str, domain: &Domain, report: &mut Report) -> Option<Vec<Vector2>> {
     let (start, end) = (vector(arc.start), vector(arc.end));
     let Some(curve @ Curve::Arc { sweep, radius, .. }) = Curve::arc_through(start, vector(arc.through), end) else {
         report.error(format!("{key}.through"), "start, through and end lie on a line").suggest("use `path`");
         return None;
     };
+    let size = domain.aabb().size().norm();
     if radius >= 1e5 * size || !radius.is_finite() {
         report.error(key, "this arc is as good as straight").suggest("use `path`");
         return None;
     }
-    let mut n = (sweep.abs().to_degrees() / ARC_STEP).ceil().max(1.0);
+    let turn = sweep.abs().to_degrees();
+    let mut step = ARC_STEP;
     if let Some(spacing) = arc.spacing {
         if !report.positive(format!("{key}.spacing"), spacing) {
             return None;
         }
-        n = n.max((curve.length() / spacing).ceil());
+        step = step.min(turn * spacing / curve.length());
     }
+    let n = (turn / step).ceil();
     if n >= MAX_POINTS as f64 {
         report.error(format!("{key}.spacing"), format!("too fine: {n} segments")).allow(format!("up to {MAX_POINTS}"));
         return None;
     }
-    let mut vertices: Vec<Vector2> = (0..=n as usize).map(|k| curve.point(k as f64 / n)).collect();
+    let tolerance = ON_BOUNDARY * size;
+    let is_tip = [start, end].map(|p| domain.contains(p) && domain.distance_to_boundary(p) > tolerance);
+    // No segment as short as those that are refused.
+    let tip_step = TIP_STEP.max(10.0 * tolerance / radius * 180.0 / std::f64::consts::PI);
+    let mut vertices: Vec<Vector2> =
+        arc_turns(turn, step, tip_step, is_tip).into_iter().map(|t| curve.point(t / turn)).collect();
     *vertices.last_mut()? = end;
     vertices[0] = start;
     Some(vertices)
+}
+
+/// Angles along an arc from 0 to `turn`, at most `step` apart, closer together at tips.
+fn arc_turns(turn: f64, step: f64, tip_step: f64, is_tip: [bool; 2]) -> Vec<f64> {
+    let room = if is_tip == [true; 2] { 0.5 * turn } else { turn };
+    let [before, after] = is_tip.map(|is_tip| {
+        let (mut angle, mut h, mut angles) = (0.0, tip_step, vec![0.0]);
+        while is_tip && h < step && angle + 1.5 * h < room {
+            angle += h;
+            angles.push(angle);
+            h *= STEP_GROWTH;
+        }
+        (angles, angle, h)
+    });
+    let (from, to) = (before.1, turn - after.1);
+    let finest = [(is_tip[0], before.2), (is_tip[1], after.2)].into_iter().filter(|t| t.0).map(|t| t.1);
+    let n = ((to - from) / finest.fold(step, f64::min) - 1e-9).ceil().max(1.0) as usize;
+    let middle = (1..n).map(|k| from + (to - from) * k as f64 / n as f64);
+    let back = after.0.into_iter().rev().map(|a| turn - a);
+    before.0.iter().copied().chain(middle).chain(back).collect()
 }
 
 /// A crack on its way to a [`CrackPath`].
@@ -260,5 +292,33 @@ fn check_apart(paths: &[(usize, CrackPath)], size: f64, report: &mut Report) {
         let verb = if cross { "crosses" } else { "touches" };
         let message = format!("this crack {verb} the crack `{}`; cracks that meet are not supported yet", path.name);
         report.error(format!("crack[{index}]"), message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arcs_are_finest_at_tips_and_change_gently() {
+        for (turn, is_tip, ends) in [
+            (90.0, [true, true], [0.2, 0.2]),
+            (90.0, [false, true], [2.0, 0.2]),
+            (47.3, [true, false], [0.2, 2.0]),
+            (90.0, [false, false], [2.0, 2.0]),
+            (1.0, [true, true], [0.2, 0.2]),
+            (0.1, [true, true], [0.1, 0.1]),
+        ] {
+            let angles = arc_turns(turn, ARC_STEP, TIP_STEP, is_tip);
+            assert_eq!((angles[0], angles[angles.len() - 1]), (0.0, turn));
+            let steps: Vec<f64> = angles.windows(2).map(|w| w[1] - w[0]).collect();
+            assert!(steps.iter().all(|h| *h <= ARC_STEP + 1e-9), "{steps:?}");
+            for (h, end) in [steps[0], steps[steps.len() - 1]].into_iter().zip(ends) {
+                assert!(h <= end + 1e-9 && h > 0.9 * end, "{steps:?}");
+            }
+            for w in steps.windows(2) {
+                assert!((w[1] / w[0]).ln().abs() < 1.5f64.ln(), "{steps:?}");
+            }
+        }
     }
 }

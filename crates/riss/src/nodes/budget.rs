@@ -1,0 +1,103 @@
+//! Whether a spacing asks for too many nodes, found out before any is placed.
+
+use super::generation::MAX_NODES;
+use super::spacing::SpacingField;
+use crate::error::{Error, Result};
+use crate::math::Vector2;
+use crate::model::Domain;
+
+/// Cells along each axis to begin with, and how often they may be split.
+const GRID: usize = 16;
+const MAX_SPLITS: u32 = 60;
+/// The estimate is rough; only what exceeds the limit by this factor is refused.
+const MARGIN: f64 = 2.0;
+
+/// Refuses a spacing that would take more than about [`MAX_NODES`] nodes.
+///
+/// # Errors
+/// [`Error::NodeGeneration`].
+pub(super) fn check(domain: &Domain, spacing: &SpacingField) -> Result<()> {
+    let n = estimate(domain, spacing);
+    // Fails for NaN, too.
+    if n <= MARGIN * MAX_NODES as f64 { Ok(()) } else { Err(too_many(Some(n))) }
+}
+
+/// The error, with the estimated number if there is one.
+pub(super) fn too_many(n: Option<f64>) -> Error {
+    let number = n.map_or(String::new(), |n| format!(", about {n:.0e}"));
+    let reason =
+        format!("the spacing asks for more than {MAX_NODES} nodes{number}; choose a larger one or a faster growth");
+    Error::NodeGeneration { reason }
+}
+
+/// Integral of 1 over the squared spacing; stops counting where it is too much already.
+fn estimate(domain: &Domain, spacing: &SpacingField) -> f64 {
+    // A lower bound that no hole or thin part can hide.
+    let everywhere = domain.area() / spacing.largest().powi(2);
+    if !(everywhere <= MARGIN * MAX_NODES as f64) {
+        return everywhere;
+    }
+    let bounds = domain.aabb();
+    let size = bounds.size() / GRID as f64;
+    let center = |i: usize, j: usize| bounds.lower + size.component_mul(&Vector2::new(i as f64 + 0.5, j as f64 + 0.5));
+    let mut cells: Vec<(Vector2, Vector2, u32)> =
+        (0..GRID * GRID).map(|k| (center(k % GRID, k / GRID), size, 0)).collect();
+    let mut n = 0.0;
+    while let Some((center, size, splits)) = cells.pop() {
+        let h = spacing.at(center);
+        // The spacing varies by no more than this over the cell.
+        let variation = 0.5 * spacing.growth() * size.norm();
+        if variation > 0.5 * h && splits < MAX_SPLITS {
+            for (x, y) in [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)] {
+                cells.push((center + size.component_mul(&Vector2::new(x, y)), size * 0.5, splits + 1));
+            }
+        } else if domain.contains(center) {
+            n += size.x * size.y / (h * h);
+            if n > 10.0 * MARGIN * MAX_NODES as f64 {
+                break;
+            }
+        }
+    }
+    n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::generate;
+    use super::super::settings::{Graded, Layout, NodeSettings};
+    use super::*;
+    use crate::case::Case;
+
+    fn case(spacing: &str) -> Case {
+        let text = format!(
+            "rigid_motion = 'mean-is-zero'
+            material = {{ young = 1, poisson = 0.3, plane = 'strain' }}
+            geometry.rectangle = {{ lower = [0, 0], upper = [2, 1] }}
+            crack = [{{ path = [[0, 0.5], [0.5, 0.5]] }}]
+            remote_stress.yy = 1
+            nodes.layout.graded = {{ {spacing} }}"
+        );
+        Case::parse(&text, "case.toml".as_ref(), &[]).unwrap()
+    }
+
+    #[test]
+    fn estimates_are_near_the_number_of_nodes() {
+        for text in ["spacing = 0.05, tip_spacing = 0.05", "tip_spacing = 1e-3", "tip_spacing = 1e-9", "growth = 0.05"]
+        {
+            let case = case(text);
+            let n = generate(&case.model, &case.settings.nodes).unwrap().chains.positions.len() as f64;
+            let Layout::Graded(graded) = &case.settings.nodes.layout else { panic!() };
+            let estimated = estimate(&case.model.domain, &SpacingField::of_model(&case.model, graded));
+            assert!(estimated / n > 0.5 && estimated / n < 1.5, "{text}: {estimated} for {n}");
+        }
+    }
+
+    #[test]
+    fn absurd_spacings_are_refused_at_once() {
+        for text in ["spacing = 1e-9", "spacing = 1e-200", "spacing = 5e-4"] {
+            let case = case(text);
+            let error = generate(&case.model, &case.settings.nodes).unwrap_err().to_string();
+            assert!(error.contains("more than 2000000 nodes"), "{error}");
+        }
+    }
+}
