@@ -148,7 +148,8 @@ impl MovingLeastSquares {
         for &i in candidates.iter() {
             let (offset, radii) = (self.nodes.positions[i as usize] - at, &self.nodes.support_radii[i as usize]);
             if WeightFunction::reaches(SupportShape::Rectangular, &offset, radii) && visible(obstacles, i) {
-                let (weight, gradient) = self.settings.weight_function.weight(SupportShape::Rectangular, &offset, radii);
+                let (weight, gradient) =
+                    self.settings.weight_function.weight(SupportShape::Rectangular, &offset, radii);
                 near.nodes[m] = i;
                 near.weights[m] = weight;
                 for d in 0..2 {

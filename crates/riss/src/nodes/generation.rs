@@ -25,14 +25,14 @@ pub struct Layered {
     pub chains: Chains,
     /// Triangles with copies at crack faces.
     pub triangulation: Triangulation,
-    /// Whether the nodes are regular.
-    pub is_regular: bool,
+    /// Steps of the grid, if the nodes are regular.
+    pub grid_step: Option<Vector2>,
 }
 
 /// Places the nodes of a model.
 pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
     let mut chains = Chains::default();
-    let is_regular = matches!(settings.layout, Layout::Structured(_));
+    let mut grid_step = None;
     match &settings.layout {
         Layout::Graded(graded) => {
             let spacing = SpacingField::of_model(model, graded);
@@ -46,6 +46,7 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
         Layout::Structured(grid) => {
             let bounds = model.domain.aabb();
             let step = bounds.size().component_div(&Vector2::new((grid.nx - 1) as f64, (grid.ny - 1) as f64));
+            grid_step = Some(step);
             chains.add_boundary(model, &|_, t| step.x * step.y / (t.x * step.y).hypot(t.y * step.x));
             let stars = add_stars(&mut chains, model, settings.star.as_ref());
             let positions = (0..grid.ny).flat_map(|j| {
@@ -69,7 +70,7 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
         }
     }
     let triangulation = Triangulation::new(&chains)?;
-    Ok(Layered { chains, triangulation, is_regular })
+    Ok(Layered { chains, triangulation, grid_step })
 }
 
 /// A disk in which only the star's own nodes stand.

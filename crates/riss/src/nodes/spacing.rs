@@ -74,7 +74,14 @@ impl SpacingField {
         }
         let (positions, sights) = (positions.to_vec(), positions.to_vec());
         let nodes = Nodes { positions, sights, support_radii: vec![] };
-        let spacings = neighbor_distances(&nodes, &Obstacles::new(vec![]), &vec![mean; nodes.len()], NEIGHBOR);
+        let spacings = neighbor_distances(
+            &nodes,
+            &Obstacles::new(vec![]),
+            &vec![mean; nodes.len()],
+            NEIGHBOR,
+            Vector2::repeat(1.0),
+        );
+        let spacings = spacings.iter().map(|s| s.x).collect();
         let tree = BoxTree::of_points(&nodes.positions);
         Self { given: Some(GivenNodes { positions: nodes.positions, spacings, tree }), ..Self::uniform(mean) }
     }

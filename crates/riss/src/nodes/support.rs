@@ -7,21 +7,31 @@ use crate::geometry::tree::BoxTree;
 use crate::math::Vector2;
 use rayon::prelude::*;
 
-/// Distance from each node to its `k`-th nearest visible neighbor, or `guess` times a large factor if there is none.
+/// Distance from each node to its `k`-th nearest visible neighbor along each axis, or `guess` times a large factor if
+/// there is none.
 ///
-/// `guess` is a typical distance to neighbors at each node, from which the search starts.
-pub fn neighbor_distances(nodes: &Nodes<2>, obstacles: &Obstacles, guess: &[f64], k: usize) -> Vec<f64> {
-    let tree = BoxTree::of_points(&nodes.positions);
+/// Lengths are counted in `step`: the steps of a grid, so that a neighbor along the longer one is as near as one along
+/// the shorter; equal steps for irregular nodes. `guess` is a typical distance to neighbors at each node, from which
+/// the search starts.
+pub fn neighbor_distances(
+    nodes: &Nodes<2>,
+    obstacles: &Obstacles,
+    guess: &[f64],
+    k: usize,
+    step: Vector2,
+) -> Vec<Vector2> {
+    let scaled: Vec<Vector2> = nodes.positions.iter().map(|p| p.component_div(&step)).collect();
+    let tree = BoxTree::of_points(&scaled);
     let one = |i: usize| {
-        let (p, sight) = (nodes.positions[i], nodes.sights[i]);
-        let mut radius = 1.5 * guess[i];
+        let (p, sight) = (scaled[i], nodes.sights[i]);
+        let mut radius = 1.5 * guess[i] / step.max();
         let mut distances = Vec::with_capacity(32);
         for _ in 0..24 {
             distances.clear();
             let query = Aabb::around(p, Vector2::repeat(radius));
             tree.visit(&query, |j| {
                 let j = j as usize;
-                let d = (nodes.positions[j] - p).norm();
+                let d = (scaled[j] - p).norm();
                 if j != i && d <= radius && obstacles.visible(sight, nodes.sights[j]) {
                     distances.push(d);
                 }
@@ -32,9 +42,9 @@ pub fn neighbor_distances(nodes: &Nodes<2>, obstacles: &Obstacles, guess: &[f64]
             radius *= 1.6;
         }
         if distances.len() < k {
-            return radius;
+            return step * radius;
         }
-        *distances.select_nth_unstable_by(k - 1, f64::total_cmp).1
+        step * *distances.select_nth_unstable_by(k - 1, f64::total_cmp).1
     };
     (0..nodes.len()).into_par_iter().map(one).collect()
 }

@@ -6,8 +6,8 @@
 use super::chains::{BoundarySegment, Chains};
 use crate::error::{Error, Result};
 use crate::math::{Vector2, cross, direction};
-use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 use rustc_hash::FxHashSet;
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 
 /// How far a copy's point of view is moved into its sector, over the local point distance.
 ///

@@ -98,14 +98,14 @@ impl Discretization {
         approximation: &ApproximationSettings,
         integration: &IntegrationSettings,
     ) -> Result<Self> {
-        let Layered { chains, triangulation, is_regular } = layered;
+        let Layered { chains, triangulation, grid_step } = layered;
         let (mut nodes, node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let obstacles = visibility_obstacles(model, &triangulation);
-        set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, is_regular);
+        set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
         let tips: Vec<Vector2> = model.tips().iter().map(|t| t.1.position).collect();
         let mut cells = match integration.scheme {
             Scheme::Elements => {
-                IntegrationCells::elements(&triangulation, &model.domain, &tips, is_regular, integration)
+                IntegrationCells::elements(&triangulation, &model.domain, &tips, grid_step.is_some(), integration)
             }
             Scheme::Cells { size } => IntegrationCells::background(model, &triangulation, &tips, size, integration)?,
         };
@@ -233,7 +233,7 @@ fn set_supports(
     node_of_copy: &[Option<u32>],
     obstacles: &Obstacles,
     settings: &ApproximationSettings,
-    is_regular: bool,
+    grid_step: Option<Vector2>,
 ) {
     let mut guess = vec![0.0; nodes.len()];
     for (copy, node) in node_of_copy.iter().enumerate() {
@@ -244,17 +244,11 @@ fn set_supports(
     let k = match settings.spacing_from {
         SpacingFrom::SecondNeighbor => 2,
         SpacingFrom::ThirdNeighbor => 3,
-        SpacingFrom::Automatic => {
-            if is_regular {
-                2
-            } else {
-                3
-            }
-        }
+        SpacingFrom::Automatic => 3 - usize::from(grid_step.is_some()),
     };
-    let spacings = neighbor_distances(nodes, obstacles, &guess, k);
-    nodes.support_radii =
-        spacings.iter().map(|c| support_radii(settings.support, settings.dilation(), Vector2::repeat(*c))).collect();
+    let step = grid_step.unwrap_or(Vector2::repeat(1.0));
+    let spacings = neighbor_distances(nodes, obstacles, &guess, k, step);
+    nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, settings.dilation(), *c)).collect();
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
