@@ -107,11 +107,7 @@ fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) ->
         svg.paths(surface.region(level, speck), LineEnd::Closed, &fill);
     }
     let before = Surface::new(&at_rest, &everywhere, &fields.triangles).outline();
-    svg.paths(
-        before,
-        LineEnd::Closed,
-        "fill=\"none\" stroke=\"#aaaaaa\" stroke-width=\"5\"",
-    );
+    svg.paths(before, LineEnd::Closed, "fill=\"none\" stroke=\"#aaaaaa\" stroke-width=\"5\"");
     svg.paths(outline, LineEnd::Closed, "fill=\"none\" stroke=\"#333333\" stroke-width=\"8\"");
     let faces = fields.crack_faces.iter().flat_map(|c| [(&c.positions, &c.left), (&c.positions, &c.right)]);
     let faces = faces.map(|(p, u)| p.iter().zip(u).map(|(p, u)| view.pixel(moved(p, u))).collect());
