@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn estimates_are_near_the_number_of_nodes() {
-        for text in ["spacing = 0.05, tip_spacing = 0.05", "tip_spacing = 1e-3", "tip_spacing = 1e-9", "growth = 0.05"]
+        for text in ["spacing = 0.05, tip_spacing = 0.05", "tip_spacing = 1e-3", "tip_spacing = 1e-8", "growth = 0.05"]
         {
             let case = case(text);
             let n = generate(&case.model, &case.settings.nodes).unwrap().chains.positions.len() as f64;
