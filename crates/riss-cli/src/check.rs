@@ -43,13 +43,13 @@ pub fn check(arguments: &CheckArguments) -> u8 {
     crate::print(&line("nodes", discrete.approximation.nodes().len().to_string()));
     crate::print(&line("cells", format!("{} with {n_points} integration points", discrete.cells.len())));
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    match results::write_picture(&dir, &case.model, &discrete) {
+    match results::prepare(&dir).and_then(|()| results::write_picture(&dir, &case.model, &discrete)) {
         Ok(path) => {
             crate::print(&line("picture", path.display().to_string()));
             DONE
         }
         Err(e) => {
-            eprintln!("error: cannot write a picture to {}: {e}", dir.display());
+            eprintln!("error: cannot write a picture to {}: {}", dir.display(), results::reason(&e));
             STOPPED
         }
     }

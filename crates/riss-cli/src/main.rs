@@ -45,6 +45,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|panic| eprintln!("{}", bug(&panic.to_string()))));
     let code = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
@@ -52,6 +53,12 @@ fn main() -> ExitCode {
         Command::New { file } => new::write(&file),
     };
     ExitCode::from(code)
+}
+
+/// What a user is told when the program itself fails; the exit code is then 101.
+fn bug(panic: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    format!("error: this is a bug in riss {version}, not in your case; please report it with the case file\n{panic}")
 }
 
 /// Prints to stdout; a reader that has gone away, such as `head`, is no error.

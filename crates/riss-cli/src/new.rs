@@ -22,7 +22,7 @@ pub fn write(path: &Path) -> u8 {
             crate::BAD_CASE
         }
         Err(e) => {
-            eprintln!("error: cannot write {}: {e}", path.display());
+            eprintln!("error: cannot write {}: {}", path.display(), crate::results::reason(&e));
             crate::BAD_CASE
         }
     }

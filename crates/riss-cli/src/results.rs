@@ -31,6 +31,29 @@ impl RunRecord {
     }
 }
 
+/// Makes the folder for results and tries to write into it.
+pub fn prepare(dir: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(dir)?;
+    let trial = dir.join(format!(".riss.{}.tmp", std::process::id()));
+    std::fs::write(&trial, b"")?;
+    std::fs::remove_file(trial)
+}
+
+/// What the system says, in words for the usual cases.
+pub fn reason(error: &io::Error) -> String {
+    // Errors of the library name their file already.
+    if error.raw_os_error().is_none() {
+        return error.to_string();
+    }
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such folder".into(),
+        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => "a file is in the way".into(),
+        io::ErrorKind::PermissionDenied => "no permission".into(),
+        io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only".into(),
+        _ => error.to_string(),
+    }
+}
+
 /// Writes all files of a run into `dir`; returns their paths.
 pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> io::Result<Vec<PathBuf>> {
     let output = &case.output;
@@ -41,7 +64,6 @@ pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) ->
 
 /// Draws the body with its nodes and cells into `dir`; returns the path.
 pub fn write_picture(dir: &Path, model: &Model, discrete: &Discretization) -> io::Result<PathBuf> {
-    std::fs::create_dir_all(dir)?;
     let path = dir.join("model.svg");
     write_model_picture(&path, model, &discrete.approximation.nodes().positions, &discrete.cells.corners)?;
     Ok(path)

@@ -6,8 +6,8 @@ use crate::{BAD_CASE, DONE, STOPPED, diagnostics, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
 use riss::case::Case;
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `riss run`.
 #[derive(Args)]
@@ -21,8 +21,8 @@ pub struct RunArguments {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<String>,
     /// Number of threads [default: all cores]
-    #[arg(long, value_name = "N")]
-    pub threads: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
     /// Prints the results as JSON instead of a table
     #[arg(long)]
     pub json: bool,
@@ -44,10 +44,15 @@ pub fn run(arguments: &RunArguments) -> u8 {
         diagnostics::report_notes(&case);
     }
     if let Some(n) = arguments.threads
-        && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global()
+        && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()
     {
         eprintln!("error: cannot start {n} threads: {e}");
         return BAD_CASE;
+    }
+    // Before hours of work, not after.
+    let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
+    if let Err(e) = results::prepare(&dir) {
+        return cannot_write(&dir, &e);
     }
     let mut progress = Progress::new(arguments.quiet);
     let outcome = linear_static(&case.model, &case.settings, &mut progress);
@@ -56,7 +61,7 @@ pub fn run(arguments: &RunArguments) -> u8 {
         Ok(result) => {
             let stage_time_s = std::mem::take(&mut progress.stage_time_s);
             let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
-            deliver(arguments, &case, &run, &result)
+            deliver(arguments, &dir, &case, &run, &result)
         }
         Err(error) => {
             eprintln!("error: {error}");
@@ -66,9 +71,8 @@ pub fn run(arguments: &RunArguments) -> u8 {
 }
 
 /// Writes files and prints the results.
-fn deliver(arguments: &RunArguments, case: &Case, run: &RunRecord, result: &StaticResult) -> u8 {
-    let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    let written = results::write(&dir, case, run, result);
+fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> u8 {
+    let written = results::write(dir, case, run, result);
     if arguments.json {
         crate::print(&results::json(case, run, result));
     } else {
@@ -83,9 +87,11 @@ fn deliver(arguments: &RunArguments, case: &Case, run: &RunRecord, result: &Stat
             }
             DONE
         }
-        Err(e) => {
-            eprintln!("error: cannot write the results to {}: {e}", dir.display());
-            STOPPED
-        }
+        Err(e) => cannot_write(dir, &e),
     }
+}
+
+fn cannot_write(dir: &Path, error: &io::Error) -> u8 {
+    eprintln!("error: cannot write the results to {}: {}", dir.display(), results::reason(error));
+    STOPPED
 }

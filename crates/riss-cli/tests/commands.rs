@@ -31,6 +31,11 @@ fn help() {
     insta::assert_snapshot!("help-run", stdout(&root(), &["run", "--help"]));
     assert_eq!(riss(&root(), &["walk"]).status.code(), Some(2));
     assert_eq!(riss(&root(), &["run", "cases/shear-edge-crack/case.toml", "--threads", "0"]).status.code(), Some(2));
+    // So many would take all memory.
+    assert_eq!(
+        riss(&root(), &["run", "cases/shear-edge-crack/case.toml", "--threads", "100000"]).status.code(),
+        Some(2)
+    );
 }
 
 /// The reference case, as an absolute path.
@@ -72,6 +77,47 @@ fn run_prints_json_alone() {
 }
 
 #[test]
+fn every_run_draws_the_deformed_body() {
+    let folder = scratch("picture");
+    stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet", "--threads", "1"]);
+    assert!(std::fs::read_to_string(folder.join("out/deformed.svg")).expect("there").ends_with("</svg>\n"));
+    let results = std::fs::read_to_string(folder.join("out/results.json")).expect("there");
+    assert!(results.contains("\"deformed.svg\""));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused_before_the_run() {
+    let folder = scratch("unwritable");
+    std::fs::write(folder.join("file"), "mine").expect("written");
+    for (command, out) in [("run", "file"), ("run", "file/below"), ("check", "file")] {
+        let output = riss(&folder, &[command, &shear_case(), "--out", out]);
+        assert_eq!(output.status.code(), Some(1));
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.ends_with(&format!("to {out}: a file is in the way\n")), "{message}");
+        assert!(command == "check" || output.stdout.is_empty());
+    }
+    assert_eq!(std::fs::read_to_string(folder.join("file")).expect("read"), "mine");
+    let missing = riss(&folder, &["new", "no/such/case.toml"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&missing.stderr).contains("there is no such folder"));
+}
+
+#[test]
+fn starting_over_replaces_all_files_and_leaves_no_others() {
+    let folder = scratch("twice");
+    let files = || {
+        let entries = std::fs::read_dir(folder.join("out")).expect("there");
+        let mut names: Vec<_> = entries.map(|e| e.expect("readable").file_name()).collect();
+        names.sort();
+        names
+    };
+    stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet"]);
+    let first = files();
+    stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet"]);
+    assert_eq!((files(), first.len()), (first.clone(), 7));
+}
+
+#[test]
 fn a_failed_analysis_has_its_own_exit_code() {
     // Held along y only: free to slide along x.
     let output =
@@ -85,6 +131,11 @@ fn new_writes_a_valid_case_and_never_overwrites() {
     let folder = scratch("new");
     stdout(&folder, &["new"]);
     stdout(&folder, &["check", "case.toml"]);
+    let text = stdout(&folder, &["run", "case.toml", "--quiet", "--out", "out"]);
+    let row = text.lines().find(|l| l.starts_with("crack-1")).expect("a row of the table");
+    let k1: f64 = row.split_whitespace().nth(4).expect("K_I").parse().expect("a number");
+    // Edge crack of 0.3 of the width in tension [Tada]: 1.66 σ √(π a).
+    assert!((k1 / (80.0 * (30.0 * std::f64::consts::PI).sqrt()) - 1.66).abs() < 0.01, "{text}");
     std::fs::write(folder.join("case.toml"), "mine").expect("written");
     let again = riss(&folder, &["new", "case.toml"]);
     assert_eq!(again.status.code(), Some(2));

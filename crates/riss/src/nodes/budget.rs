@@ -22,6 +22,15 @@ pub(super) fn check(domain: &Domain, spacing: &SpacingField) -> Result<()> {
     if n <= MARGIN * MAX_NODES as f64 { Ok(()) } else { Err(too_many(Some(n))) }
 }
 
+/// The same for a spacing that is exceeded nowhere: no hole or thin part can hide what it asks for.
+///
+/// # Errors
+/// [`Error::NodeGeneration`].
+pub(super) fn check_everywhere(domain: &Domain, largest: f64) -> Result<()> {
+    let n = domain.area() / largest.powi(2);
+    if n <= MARGIN * MAX_NODES as f64 { Ok(()) } else { Err(too_many(Some(n))) }
+}
+
 /// The error, with the estimated number if there is one.
 pub(super) fn too_many(n: Option<f64>) -> Error {
     let number = n.map_or(String::new(), |n| format!(", about {n:.0e}"));
@@ -32,11 +41,6 @@ pub(super) fn too_many(n: Option<f64>) -> Error {
 
 /// Integral of 1 over the squared spacing; stops counting where it is too much already.
 fn estimate(domain: &Domain, spacing: &SpacingField) -> f64 {
-    // A lower bound that no hole or thin part can hide.
-    let everywhere = domain.area() / spacing.largest().powi(2);
-    if !(everywhere <= MARGIN * MAX_NODES as f64) {
-        return everywhere;
-    }
     let bounds = domain.aabb();
     let size = bounds.size() / GRID as f64;
     let center = |i: usize, j: usize| bounds.lower + size.component_mul(&Vector2::new(i as f64 + 0.5, j as f64 + 0.5));
@@ -82,7 +86,7 @@ mod tests {
 
     #[test]
     fn estimates_are_near_the_number_of_nodes() {
-        for text in ["spacing = 0.05, tip_spacing = 0.05", "tip_spacing = 1e-3", "tip_spacing = 1e-9", "growth = 0.05"]
+        for text in ["spacing = 0.05, tip_spacing = 0.05", "tip_spacing = 1e-3", "tip_spacing = 1e-8", "growth = 0.05"]
         {
             let case = case(text);
             let n = generate(&case.model, &case.settings.nodes).unwrap().chains.positions.len() as f64;
@@ -94,10 +98,16 @@ mod tests {
 
     #[test]
     fn absurd_spacings_are_refused_at_once() {
-        for text in ["spacing = 1e-9", "spacing = 1e-200", "spacing = 5e-4"] {
-            let case = case(text);
-            let error = generate(&case.model, &case.settings.nodes).unwrap_err().to_string();
+        let model = case("spacing = 0.1").model;
+        for spacing in [1e-9, 1e-200, 5e-4] {
+            let graded = Graded { spacing: Some(spacing), tip_spacing: None, growth: None };
+            let settings = NodeSettings { layout: Layout::Graded(graded), star: None };
+            let error = generate(&model, &settings).unwrap_err().to_string();
             assert!(error.contains("more than 2000000 nodes"), "{error}");
         }
+        // Fine along a small part only, but over a long way.
+        let field =
+            SpacingField::of_model(&model, &Graded { spacing: None, tip_spacing: Some(1e-9), growth: Some(1e-3) });
+        assert!(estimate(&model.domain, &field) > 2.0 * MAX_NODES as f64);
     }
 }

@@ -35,6 +35,9 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
     let mut grid_step = None;
     match &settings.layout {
         Layout::Graded(graded) => {
+            if let Some(largest) = graded.spacing {
+                budget::check_everywhere(&model.domain, largest)?;
+            }
             let spacing = SpacingField::of_model(model, graded);
             budget::check(&model.domain, &spacing)?;
             chains.add_boundary(model, &|p, _| spacing.at(p));

@@ -262,11 +262,9 @@ impl Builder<'_> {
 
 /// The closest point of the boundary; exact on edges along an axis.
 fn snapped(domain: &Domain, p: Vector2) -> Vector2 {
-    if domain.distance_to_boundary(p) == 0.0 {
-        return p;
-    }
     let (edge, t) = domain.closest_edge(p);
-    let mut q = domain.edges[edge].point(t);
+    // A distance that underflows is zero, too: axes are set below even then.
+    let mut q = if domain.distance_to_boundary(p) == 0.0 { p } else { domain.edges[edge].point(t) };
     if let Curve::Line { start, end } = domain.edges[edge] {
         for axis in 0..2 {
             if start[axis] == end[axis] {

@@ -44,7 +44,7 @@ pub(super) fn build(
         return None;
     }
     let domain = domain(&file, folder, &mut report)?;
-    settings::check_positions(&mut settings, &file, &domain, &mut report);
+    settings::check_layout(&mut settings, &file, &domain, &mut report);
     let cracks = cracks::cracks(&file.crack, &domain, &mut report);
     let mut setting = Setting { domain, material, exact, file: &file };
     let loads = loads::loads(&setting, &mut report);

@@ -7,13 +7,18 @@ use crate::approximation::settings::Basis;
 use crate::case::schema::{self, CaseFile, NodeFile};
 use crate::integration::settings::Scheme;
 use crate::model::Domain;
-use crate::nodes::settings::{Layout, Listed, NodeSettings, Star};
+use crate::nodes::generation::MAX_NODES;
+use crate::nodes::settings::{Graded, Layout, Listed, NodeSettings, Star};
 use crate::system::ConstraintMethod;
 use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Node positions this close to the boundary, times the size of the body, are left to the boundary's own nodes.
 const ON_BOUNDARY: f64 = 1e-6;
+/// Most nodes of a star.
+const MAX_STAR_NODES: usize = 10_000;
+/// Least spacing at tips over the size of the body; below it positions have too few digits left.
+const LEAST_SPACING: f64 = 1e-9;
 
 /// The settings as far as they can be told without the body.
 pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> Settings {
@@ -130,8 +135,49 @@ fn read_nodes(file: &NodeFile, folder: &Path, report: &mut Report) -> Vec<[f64; 
     positions
 }
 
+/// What the body says about spacings and positions, and that no number of nodes or cells is beyond reason.
+pub(super) fn check_layout(settings: &mut Settings, file: &CaseFile, domain: &Domain, report: &mut Report) {
+    match &settings.nodes.layout {
+        Layout::Graded(graded) => check_spacings(graded, domain, report),
+        Layout::Structured(grid) => {
+            if grid.nx.saturating_mul(grid.ny) > MAX_NODES {
+                let message = format!("{} times {} nodes are too many", grid.nx, grid.ny);
+                report.error("nodes.layout.structured", message).allow(format!("up to {MAX_NODES} in all"));
+            }
+        }
+        Layout::Listed(_) => check_positions(settings, file, domain, report),
+    }
+    if let Some(star) = &settings.nodes.star
+        && star.radii.len().saturating_mul(star.nodes_per_ring) > MAX_STAR_NODES
+    {
+        let message = format!("{} rings of {} nodes are too many", star.radii.len(), star.nodes_per_ring);
+        report.error("nodes.star", message).allow(format!("up to {MAX_STAR_NODES} nodes at a tip"));
+    }
+    if let Scheme::Cells { size } = settings.integration.scheme {
+        let bounds = domain.aabb().size();
+        let least = (bounds.x * bounds.y / MAX_NODES as f64).sqrt();
+        if size > 0.0 && size < least {
+            let message = format!("this asks for more than {MAX_NODES} cells");
+            report.error("integration.scheme.cells.size", message).allow(format!("at least {least:.3e} for this body"));
+        }
+    }
+}
+
+fn check_spacings(graded: &Graded, domain: &Domain, report: &mut Report) {
+    let least = (domain.area() / MAX_NODES as f64).sqrt();
+    if graded.spacing.is_some_and(|h| h > 0.0 && h < least) {
+        let message = format!("this asks for more than {MAX_NODES} nodes");
+        report.error("nodes.layout.graded.spacing", message).allow(format!("at least {least:.3e} for this body"));
+    }
+    let least = LEAST_SPACING * domain.aabb().size().norm();
+    if graded.tip_spacing.is_some_and(|h| h > 0.0 && h < least) {
+        let message = "too small for the size of the body";
+        report.error("nodes.layout.graded.tip_spacing", message).allow(format!("at least {least:.3e}"));
+    }
+}
+
 /// Checks listed positions against the body; those on the boundary are left out.
-pub(super) fn check_positions(settings: &mut Settings, file: &CaseFile, domain: &Domain, report: &mut Report) {
+fn check_positions(settings: &mut Settings, file: &CaseFile, domain: &Domain, report: &mut Report) {
     let Layout::Listed(listed) = &mut settings.nodes.layout else { return };
     let size = domain.aabb().size().norm();
     let is_file = matches!(file.nodes.layout, schema::Layout::File(_));

@@ -166,7 +166,7 @@ pub struct OutputSettings {
     pub nodes: bool,
     /// Positions and weights of the integration points.
     pub integration_points: bool,
-    /// Displacement, stress and strain over the body.
+    /// Displacement, stress and strain over the body, and a picture of them.
     pub fields: bool,
 }
 
