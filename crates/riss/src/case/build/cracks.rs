@@ -58,7 +58,8 @@ fn vertices(crack: &schema::Crack, key: &str, size: f64, report: &mut Report) ->
 
 fn arc_vertices(arc: &schema::CrackArc, key: &str, size: f64, report: &mut Report) -> Option<Vec<Vector2>> {
     let (start, end) = (vector(arc.start), vector(arc.end));
-    let Some(curve @ Curve::Arc { sweep, radius, .. }) = Curve::arc_through(start, vector(arc.through), end) else {
+    let Some(curve @ Curve::Arc { center, sweep, radius, .. }) = Curve::arc_through(start, vector(arc.through), end)
+    else {
         report.error(format!("{key}.through"), "start, through and end lie on a line").suggest("use `path`");
         return None;
     };
@@ -77,10 +78,11 @@ fn arc_vertices(arc: &schema::CrackArc, key: &str, size: f64, report: &mut Repor
         report.error(format!("{key}.spacing"), format!("too fine: {n} segments")).allow(format!("up to {MAX_POINTS}"));
         return None;
     }
-    let mut vertices: Vec<Vector2> = (0..=n as usize).map(|k| curve.point(k as f64 / n)).collect();
-    *vertices.last_mut()? = end;
-    vertices[0] = start;
-    Some(vertices)
+    // Along tangents that meet outside the arc, so that the first and last segment point as the arc does at its ends:
+    // chords would be off by half a step, and K with them by the sine of that.
+    let outward = 1.0 / (0.5 * sweep / n).cos();
+    let corner = |k: usize| center + (curve.point((k as f64 + 0.5) / n) - center) * outward;
+    Some(std::iter::once(start).chain((0..n as usize).map(corner)).chain([end]).collect())
 }
 
 /// A crack on its way to a [`CrackPath`].
