@@ -230,9 +230,10 @@ fn set_supports(
             }
         }
     };
+    let dilation = settings.dilation(is_regular);
     let spacings = neighbor_distances(nodes, obstacles, &guess, k);
     nodes.support_radii =
-        spacings.iter().map(|c| support_radii(settings.support, settings.dilation(), Vector2::repeat(*c))).collect();
+        spacings.iter().map(|c| support_radii(settings.support, dilation, Vector2::repeat(*c))).collect();
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix.
