@@ -39,14 +39,14 @@ pub fn visibility_obstacles(model: &Model, triangulation: &Triangulation) -> Obs
         })
         .collect();
     for range in &model.domain.loops {
-        let pieces: Vec<&BoundarySegment> =
-            triangulation.boundary.iter().filter(|s| range.contains(&s.edge)).collect();
+        let pieces: Vec<&BoundarySegment> = triangulation.boundary.iter().filter(|s| range.contains(&s.edge)).collect();
         let outline = boundary_lines(model, triangulation, &pieces);
         if !is_convex_outline(&outline.concat()) {
             // A crack that starts on a concave arc goes on to the sunk line: nothing sees around its mouth.
             for (piece, lines) in pieces.iter().zip(&outline) {
                 let p = triangulation.position(piece.points[0]);
-                let near = 1e-6 * triangulation.edge_length[triangulation.copies[piece.points[0] as usize].point as usize];
+                let near =
+                    1e-6 * triangulation.edge_length[triangulation.copies[piece.points[0] as usize].point as usize];
                 if lines[0][0] != p && mouths.iter().any(|m| (m - p).norm() <= near) {
                     segments.push([p, lines[0][0]]);
                 }
@@ -58,11 +58,7 @@ pub fn visibility_obstacles(model: &Model, triangulation: &Triangulation) -> Obs
 }
 
 /// Opaque lines for each piece of a loop, in order.
-fn boundary_lines(
-    model: &Model,
-    triangulation: &Triangulation,
-    pieces: &[&BoundarySegment],
-) -> Vec<Vec<[Vector2; 2]>> {
+fn boundary_lines(model: &Model, triangulation: &Triangulation, pieces: &[&BoundarySegment]) -> Vec<Vec<[Vector2; 2]>> {
     let n = pieces.len();
     let concave = |s: &BoundarySegment| match model.domain.edges[s.edge] {
         Curve::Arc { center, radius, sweep, .. } if sweep < 0.0 => {

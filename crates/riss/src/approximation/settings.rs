@@ -33,11 +33,14 @@ impl Default for ApproximationSettings {
 }
 
 impl ApproximationSettings {
-    /// The dilation that is used: as given, or 2.5 (linear basis) and 3.2 (quadratic).
-    pub fn dilation(&self) -> f64 {
-        self.dilation.unwrap_or(match self.basis {
-            Basis::Linear => 2.5,
-            Basis::Quadratic => 3.2,
+    /// The dilation that is used: as given, or 3.2 (quadratic basis), 2 (linear basis on irregular nodes), 2.5 (on
+    /// regular ones, and with the Gaussian [EFG, section 2]).
+    pub fn dilation(&self, is_regular: bool) -> f64 {
+        self.dilation.unwrap_or(match (self.basis, self.weight_function) {
+            (Basis::Quadratic, _) => 3.2,
+            (Basis::Linear, WeightFunction::Gaussian) => 2.5,
+            (Basis::Linear, WeightFunction::QuarticSpline | WeightFunction::CubicSpline) if is_regular => 2.5,
+            (Basis::Linear, WeightFunction::QuarticSpline | WeightFunction::CubicSpline) => 2.0,
         })
     }
 }

@@ -21,7 +21,7 @@ pub struct IntegrationSettings {
 
 impl Default for IntegrationSettings {
     fn default() -> Self {
-        Self { scheme: Scheme::Elements, points: 3, tip_points: 9, gradient_correction: GradientCorrection::Cell }
+        Self { scheme: Scheme::Elements, points: 4, tip_points: 9, gradient_correction: GradientCorrection::Cell }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::model::Model;
 /// Spacing without any feature, as a fraction of √area.
 const BODY_FRACTION: f64 = 1.0 / 25.0;
 /// Nodes along the radius of the free disk around a tip, before grading.
-const TIP_FRACTION: f64 = 1.0 / 100.0;
+const TIP_FRACTION: f64 = 1.0 / 150.0;
 /// Spacing along an arc as a fraction of its radius.
 const ARC_FRACTION: f64 = 0.12;
 /// Spacing as a fraction of the thickness of the body at a boundary point.

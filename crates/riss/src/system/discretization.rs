@@ -247,8 +247,9 @@ fn set_supports(
         SpacingFrom::Automatic => 3 - usize::from(grid_step.is_some()),
     };
     let step = grid_step.unwrap_or(Vector2::repeat(1.0));
+    let dilation = settings.dilation(grid_step.is_some());
     let spacings = neighbor_distances(nodes, obstacles, &guess, k, step);
-    nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, settings.dilation(), *c)).collect();
+    nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, dilation, *c)).collect();
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all

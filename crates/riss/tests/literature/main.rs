@@ -1,5 +1,6 @@
 //! Crack problems of the literature and of closed form, solved through the public interface.
 
+mod arc_crack;
 mod bodies;
 mod energy_release;
 mod near_tip;

@@ -29,6 +29,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Domain sizes of Fig. 42, over a.
 const SIZES: [f64; 8] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Support radius over spacing in the paper (d_max).
+const PAPER_DILATION: f64 = 2.5;
 /// Rings of Fig. 34, over a.
 const PAPER_RINGS: [f64; 3] = [0.03, 0.09, 0.18];
 /// Nodes in each of these rings: about as far apart as the rings.
@@ -52,6 +54,7 @@ fn grid(n: usize, correction: GradientCorrection) -> Settings {
 fn paper_grid(n: usize) -> Settings {
     let mut settings = grid(n, GradientCorrection::None);
     settings.approximation.weight_function = WeightFunction::Gaussian;
+    settings.approximation.dilation = Some(PAPER_DILATION);
     settings
 }
 

@@ -24,7 +24,7 @@ fn refined(model: &Model, factor: f64, growth: f64) -> Settings {
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Graded(Graded {
         spacing: Some(model.domain.area().sqrt() / 25.0 * factor),
-        tip_spacing: Some(tip / 100.0 * factor),
+        tip_spacing: Some(tip / 150.0 * factor),
         growth: Some(growth),
     });
     settings

@@ -47,6 +47,7 @@ fn check_grid(nx: usize, ny: usize, n_nodes: usize, paper: [f64; 2]) {
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Structured(Structured { nx, ny });
     settings.approximation.weight_function = WeightFunction::Gaussian;
+    settings.approximation.dilation = Some(2.5);
     // The grids are not square; the third neighbor stands at the larger of the two spacings.
     settings.approximation.spacing_from = SpacingFrom::ThirdNeighbor;
     settings.fracture.domain = TipDomainShape::Square;
