@@ -57,7 +57,7 @@ fn overrides_win_over_the_file() {
     let overrides = ["material.young=5".to_string(), "approximation.basis=quadratic".into()];
     let case = Case::parse(&template().text(), Path::new("case.toml"), &overrides).unwrap();
     assert_eq!(case.model.material.young, 5.0);
-    assert_eq!(case.settings.approximation.dilation(), 3.2);
+    assert_eq!(case.settings.approximation.dilation(false), 3.2);
 }
 
 #[test]
