@@ -100,9 +100,7 @@ pub fn quality<const D: usize>(basis: Basis, near: &mut Neighborhood<D>) -> f64 
 fn basis_at<const D: usize, const M: usize>(xi: [f64; D]) -> [f64; M] {
     let mut p = [0.0; M];
     p[0] = 1.0;
-    for d in 0..D {
-        p[1 + d] = xi[d];
-    }
+    p[1..=D].copy_from_slice(&xi);
     let mut k = 1 + D;
     for i in 0..D {
         for j in i..D {
