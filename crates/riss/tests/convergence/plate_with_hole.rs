@@ -11,13 +11,12 @@
 //!
 //! | polar nodes | energy error | σ_xx | graded nodes | energy error | σ_xx |
 //! | --- | --- | --- | --- | --- | --- |
-//! | 62 | 3.1e-2 | 3.099 | 200 | 1.3e-2 | 2.957 |
-//! | 194 | 7.6e-3 | 3.061 | 515 | 1.0e-2 | 3.289 |
-//! | 397 | 3.8e-3 | 3.063 | 1795 | 4.4e-3 | 3.108 |
-//! | 778 | 2.1e-3 | 3.046 | 3942 | 2.5e-3 | 3.038 |
-//! | 1515 | 1.3e-3 | 3.032 | | | |
-//! | 2802 | 8.5e-4 | 3.025 | | | |
-//! | rate | 1.9 | | | 1.0 | |
+//! | 62 | 2.3e-2 | 2.800 | 200 | 9.9e-3 | 3.036 |
+//! | 194 | 7.2e-3 | 2.914 | 515 | 8.8e-3 | 2.909 |
+//! | 397 | 4.0e-3 | 2.930 | 1795 | 3.5e-3 | 3.080 |
+//! | 778 | 2.5e-3 | 2.948 | 3942 | 2.0e-3 | 3.050 |
+//! | 1515 | 1.6e-3 | 2.962 | | | |
+//! | 2802 | 1.0e-3 | 2.975 | | | |
 //!
 //! A stress at the boundary is a one-sided derivative of a linear fit, so that its error is of first order: a part of
 //! the spacing times the slope of the stress, 7 at that point. Regular nodes cancel most of it, irregular ones do not,
