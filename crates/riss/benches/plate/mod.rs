@@ -23,8 +23,7 @@ pub fn plate(n_nodes: usize) -> (Model, Discretization) {
     model.cracks.push(CrackPath {
         name: "crack-1".into(),
         vertices: vec![Vector2::new(0.0, 8.0), Vector2::new(3.5, 8.0)],
-        start_is_tip: false,
-        end_is_tip: true,
+        ends: [riss::crack::EndKind::Mouth, riss::crack::EndKind::Tip],
     });
     let mut settings = Settings::default();
     let spacing = (112.0 / n_nodes as f64).sqrt();

@@ -1,5 +1,6 @@
 //! What hides nodes from points: cracks, and the boundary where the body is not convex [EFG, section 4.1].
 
+use crate::crack::EndKind;
 use crate::geometry::curve::Curve;
 use crate::geometry::obstacles::Obstacles;
 use crate::geometry::predicates::orientation;
@@ -25,19 +26,12 @@ pub fn visibility_obstacles(model: &Model, triangulation: &Triangulation) -> Obs
         let last = crack.vertices.len() - 1;
         for (k, w) in crack.vertices.windows(2).enumerate() {
             let e = (w[1] - w[0]) * MOUTH_OVERSHOOT;
-            let start = if k == 0 && !crack.start_is_tip { w[0] - e } else { w[0] };
-            let end = if k + 1 == last && !crack.end_is_tip { w[1] + e } else { w[1] };
+            let start = if k == 0 && crack.ends[0] == EndKind::Mouth { w[0] - e } else { w[0] };
+            let end = if k + 1 == last && crack.ends[1] == EndKind::Mouth { w[1] + e } else { w[1] };
             segments.push([start, end]);
         }
     }
-    let mouths: Vec<Vector2> = model
-        .cracks
-        .iter()
-        .flat_map(|c| {
-            let ends = [(c.start_is_tip, c.vertices[0]), (c.end_is_tip, c.vertices[c.vertices.len() - 1])];
-            ends.into_iter().filter(|end| !end.0).map(|end| end.1)
-        })
-        .collect();
+    let mouths: Vec<Vector2> = model.cracks.iter().flat_map(|c| c.mouths()).collect();
     for range in &model.domain.loops {
         let pieces: Vec<&BoundarySegment> = triangulation.boundary.iter().filter(|s| range.contains(&s.edge)).collect();
         let outline = boundary_lines(model, triangulation, &pieces);

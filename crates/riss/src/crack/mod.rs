@@ -5,5 +5,5 @@
 pub mod path;
 pub mod tip;
 
-pub use path::{CrackPath, End};
+pub use path::{CrackPath, End, EndKind};
 pub use tip::{TipFrame, TipId};

@@ -15,17 +15,37 @@ pub enum End {
     End,
 }
 
-/// A polyline whose ends are tips, unless they lie on the boundary of the body.
+impl End {
+    /// 0 for the start, 1 for the end.
+    pub fn index(self) -> usize {
+        match self {
+            Self::Start => 0,
+            Self::End => 1,
+        }
+    }
+}
+
+/// What an end of a crack path is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum EndKind {
+    /// A crack tip.
+    Tip,
+    /// On the boundary of the body.
+    Mouth,
+    /// On a crack, which has a vertex there.
+    Junction,
+}
+
+/// A polyline whose ends are tips, unless they lie on the boundary of the body or on a crack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrackPath {
     /// Name in the case file and the results.
     pub name: String,
     /// Vertices in order, at least two, no two neighbors equal. An end on the boundary is exactly on it.
     pub vertices: Vec<Vector2>,
-    /// Whether the first vertex is a tip (otherwise a mouth on the boundary).
-    pub start_is_tip: bool,
-    /// Whether the last vertex is a tip (otherwise a mouth on the boundary).
-    pub end_is_tip: bool,
+    /// What the first and the last vertex are.
+    pub ends: [EndKind; 2],
 }
 
 impl CrackPath {
@@ -41,12 +61,32 @@ impl CrackPath {
 
     /// The crack length `a` of handbooks: half of the path if both ends are tips, all of it otherwise.
     pub fn handbook_length(&self) -> f64 {
-        if self.start_is_tip && self.end_is_tip { 0.5 * self.length() } else { self.length() }
+        if self.ends == [EndKind::Tip; 2] { 0.5 * self.length() } else { self.length() }
     }
 
     /// Ends that are tips.
     pub fn tip_ends(&self) -> impl Iterator<Item = End> {
-        [(self.start_is_tip, End::Start), (self.end_is_tip, End::End)].into_iter().filter(|t| t.0).map(|t| t.1)
+        let ends = self.ends;
+        [End::Start, End::End].into_iter().filter(move |e| ends[e.index()] == EndKind::Tip)
+    }
+
+    /// What an end is.
+    pub fn end_kind(&self, end: End) -> EndKind {
+        self.ends[end.index()]
+    }
+
+    /// Position of an end.
+    pub fn end_position(&self, end: End) -> Vector2 {
+        match end {
+            End::Start => self.vertices[0],
+            End::End => self.vertices[self.vertices.len() - 1],
+        }
+    }
+
+    /// Ends on the boundary of the body.
+    pub fn mouths(&self) -> impl Iterator<Item = Vector2> + '_ {
+        let is_mouth = |e: &End| self.end_kind(*e) == EndKind::Mouth;
+        [End::Start, End::End].into_iter().filter(is_mouth).map(|e| self.end_position(e))
     }
 
     /// Frame of an end, growth direction outward along the last segment there.
@@ -74,8 +114,7 @@ mod tests {
         let crack = CrackPath {
             name: "c".into(),
             vertices: vec![Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(1.0, 2.0)],
-            start_is_tip: true,
-            end_is_tip: true,
+            ends: [EndKind::Tip; 2],
         };
         assert!((crack.frame(End::Start).x1() - Vector2::new(-1.0, 0.0)).norm() < 1e-15);
         assert!((crack.frame(End::End).x1() - Vector2::new(0.0, 1.0)).norm() < 1e-15);

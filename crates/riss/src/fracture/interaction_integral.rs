@@ -218,7 +218,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::crack::{CrackPath, End, TipFrame, TipId};
+    use crate::crack::{CrackPath, End, EndKind, TipFrame, TipId};
     use crate::exact::{CrackTipField, ExactField};
     use crate::material::PlaneState;
 
@@ -237,8 +237,7 @@ mod tests {
         let crack = CrackPath {
             name: "c".into(),
             vertices: vec![Vector2::new(-2.0, -1.0), Vector2::new(0.1, 0.2)],
-            start_is_tip: false,
-            end_is_tip: true,
+            ends: [EndKind::Mouth, EndKind::Tip],
         };
         let frame: TipFrame = crack.frame(End::End);
         let exact = CrackTipField { tip: frame.position, angle: frame.angle, k1: 1.3, k2: -0.7, t_stress: 0.4 };

@@ -277,8 +277,7 @@ mod tests {
         model.cracks.push(CrackPath {
             name: "c".into(),
             vertices: vec![Vector2::new(-0.8, -0.5), Vector2::new(0.2, -0.3), Vector2::new(0.5, -0.9)],
-            start_is_tip: true,
-            end_is_tip: true,
+            ends: [crate::crack::EndKind::Tip; 2],
         });
         model
     }

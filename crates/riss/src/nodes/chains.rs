@@ -58,10 +58,7 @@ impl Chains {
         let mouths: Vec<(EdgeId, f64, Vector2)> = model
             .cracks
             .iter()
-            .flat_map(|c| {
-                let ends = [(c.start_is_tip, c.vertices[0]), (c.end_is_tip, c.vertices[c.vertices.len() - 1])];
-                ends.into_iter().filter(|e| !e.0).map(|e| e.1)
-            })
+            .flat_map(|c| c.mouths())
             .map(|p| {
                 let (edge, t) = model.domain.closest_edge(p);
                 (edge, t, p)

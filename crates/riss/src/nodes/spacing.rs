@@ -3,6 +3,7 @@
 use super::Nodes;
 use super::settings::Graded;
 use super::support::neighbor_distances;
+use crate::crack::EndKind;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::curve::Curve;
 use crate::geometry::obstacles::Obstacles;
@@ -272,7 +273,7 @@ pub fn free_radius(model: &Model, crack: usize, tip: Vector2) -> f64 {
     }
     let far =
         if (path.vertices[0] - tip).norm() == 0.0 { path.vertices[path.vertices.len() - 1] } else { path.vertices[0] };
-    let far_is_tip = path.start_is_tip && path.end_is_tip;
+    let far_is_tip = path.ends == [EndKind::Tip; 2];
     // Two tips of one crack share its length.
     radius = radius.min((far - tip).norm() * if far_is_tip { 0.5 } else { 1.0 });
     radius.min(model.domain.distance_to_boundary(tip))

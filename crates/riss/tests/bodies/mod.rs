@@ -5,7 +5,7 @@
 use riss::analysis::{Settings, Silent, StaticResult, discretize, linear_static};
 use riss::approximation::moving_least_squares::Derivatives;
 use riss::approximation::{ShapeFunctions, Surroundings};
-use riss::crack::CrackPath;
+use riss::crack::{CrackPath, EndKind};
 use riss::exact::ExactField;
 use riss::geometry::curve::Curve;
 use riss::material::{Elasticity, PlaneState};
@@ -70,10 +70,10 @@ pub fn body(domain: Domain, plane: PlaneState) -> Model {
     Model { material: Elasticity { young: 1000.0, poisson: 0.3, plane }, ..Model::plain(domain) }
 }
 
-/// A crack with tips at the ends that are not said to be mouths.
-pub fn crack(vertices: &[(f64, f64)], start_is_tip: bool, end_is_tip: bool) -> CrackPath {
+/// A crack that starts and ends as said.
+pub fn crack(vertices: &[(f64, f64)], ends: [EndKind; 2]) -> CrackPath {
     let vertices = vertices.iter().map(|v| Vector2::new(v.0, v.1)).collect();
-    CrackPath { name: "crack".into(), vertices, start_is_tip, end_is_tip }
+    CrackPath { name: "crack".into(), vertices, ends }
 }
 
 /// Prescribes one component on a part.

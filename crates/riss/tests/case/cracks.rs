@@ -2,6 +2,7 @@
 
 use super::{bad, good, template};
 use riss::crack::CrackPath;
+use riss::crack::EndKind::{Mouth, Tip};
 
 fn crack(path: &str) -> CrackPath {
     with_geometry("", path).0
@@ -17,25 +18,25 @@ fn with_geometry(extra: &str, path: &str) -> (CrackPath, usize) {
 #[test]
 fn ends_inside_are_tips_and_ends_on_the_boundary_mouths() {
     let inner = crack("path = [[1, 8], [3.5, 8]]");
-    assert!(inner.start_is_tip && inner.end_is_tip && inner.name == "crack-1");
+    assert_eq!((inner.ends, inner.name.as_str()), ([Tip; 2], "crack-1"));
     let edge = crack("path = [[0, 8], [3.5, 8]]");
-    assert!(!edge.start_is_tip && edge.end_is_tip);
+    assert_eq!(edge.ends, [Mouth, Tip]);
     let through = crack("path = [[0, 8], [3.5, 9], [7, 8]]");
-    assert!(!through.start_is_tip && !through.end_is_tip);
+    assert_eq!(through.ends, [Mouth; 2]);
 }
 
 #[test]
 fn mouths_are_exactly_on_the_boundary() {
     for end in ["[7.000001, 5.3]", "[6.999999, 5.3]", "[7, 5.3]"] {
         let (path, notes) = with_geometry("", &format!("path = [[3.5, 8], {end}]"));
-        assert_eq!((path.vertices[1].x, path.end_is_tip, notes), (7.0, false, 0), "{end}");
+        assert_eq!((path.vertices[1].x, path.ends[1], notes), (7.0, Mouth, 0), "{end}");
     }
 }
 
 #[test]
 fn a_small_overhang_is_clipped_with_a_note() {
     let (path, notes) = with_geometry("", "path = [[-0.5, 8], [3.5, 9]]");
-    assert_eq!((path.vertices[0].x, path.start_is_tip, notes), (0.0, false, 1));
+    assert_eq!((path.vertices[0].x, path.ends[0], notes), (0.0, Mouth, 1));
     assert!((path.vertices[0].y - 8.125).abs() < 1e-12);
     let mut template = template();
     template.geometry += "[[crack]]\npath = [[-3, 8], [3.5, 9]]\n";
@@ -46,9 +47,9 @@ fn a_small_overhang_is_clipped_with_a_note() {
 fn cracks_may_start_at_holes() {
     let hole = "[[hole]]\ncircle = { center = [3, 8], radius = 1 }\n";
     let (path, notes) = with_geometry(hole, "path = [[4, 8], [5, 8]]");
-    assert!(!path.start_is_tip && path.end_is_tip && notes == 0);
+    assert_eq!((path.ends, notes), ([Mouth, Tip], 0));
     let (path, notes) = with_geometry(hole, "path = [[3.9, 8], [5, 8]]");
-    assert!((path.vertices[0].x - 4.0).abs() < 1e-14 && !path.start_is_tip && notes == 1);
+    assert!((path.vertices[0].x - 4.0).abs() < 1e-14 && path.ends[0] == Mouth && notes == 1);
 }
 
 #[test]
@@ -72,5 +73,5 @@ fn arcs_become_fine_polylines() {
 #[test]
 fn a_crack_may_run_close_to_the_boundary_it_starts_from() {
     let shallow = crack("path = [[0, 8], [0.05, 12]]");
-    assert!(!shallow.start_is_tip && shallow.end_is_tip);
+    assert_eq!(shallow.ends, [Mouth, Tip]);
 }

@@ -1,7 +1,7 @@
 //! Bodies with cracks that several tests share.
 
 use riss::analysis::{Settings, Silent, StaticResult, TipRecord, linear_static};
-use riss::crack::CrackPath;
+use riss::crack::{CrackPath, EndKind};
 use riss::exact::CrackTipField;
 use riss::geometry::curve::Curve;
 use riss::math::Vector2;
@@ -29,7 +29,7 @@ pub fn rectangle(lower: [f64; 2], upper: [f64; 2], holes: &[[f64; 3]]) -> Domain
 
 /// A crack along the points, from a mouth on the boundary to a tip.
 pub fn edge_crack(points: &[[f64; 2]]) -> CrackPath {
-    CrackPath { start_is_tip: false, ..inner_crack(points) }
+    CrackPath { ends: [EndKind::Mouth, EndKind::Tip], ..inner_crack(points) }
 }
 
 /// A crack along the points, with a tip at both ends.
@@ -37,8 +37,7 @@ pub fn inner_crack(points: &[[f64; 2]]) -> CrackPath {
     CrackPath {
         name: "crack".into(),
         vertices: points.iter().map(|p| Vector2::from(*p)).collect(),
-        start_is_tip: true,
-        end_is_tip: true,
+        ends: [EndKind::Tip; 2],
     }
 }
 

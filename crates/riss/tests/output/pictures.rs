@@ -1,7 +1,7 @@
 //! Pictures: what they show, and how large they are.
 
 use crate::sample;
-use riss::crack::CrackPath;
+use riss::crack::{CrackPath, EndKind};
 use riss::geometry::curve::Curve;
 use riss::math::Vector2;
 use riss::model::{
@@ -25,11 +25,10 @@ pub fn model() -> Model {
     let mut domain = Domain::new(outline, vec![vec![Curve::circle(corner(2.7, 1.2), 0.5)]]);
     let parts = ["bottom", "right", "top", "left", "hole"];
     let [bottom, right, top, left, hole] = [0, 1, 2, 3, 4].map(|k| domain.add_part(parts[k], vec![k]));
-    let crack = |name: &str, vertices: &[(f64, f64)], start_is_tip| CrackPath {
+    let crack = |name: &str, vertices: &[(f64, f64)], start| CrackPath {
         name: name.into(),
         vertices: vertices.iter().map(|&(x, y)| corner(x, y)).collect(),
-        start_is_tip,
-        end_is_tip: true,
+        ends: [start, EndKind::Tip],
     };
     let support =
         |part, direction, value: f64| BoundarySupport { part, direction, value: PrescribedValue::Field(value.into()) };
@@ -39,8 +38,8 @@ pub fn model() -> Model {
         material: sample::MATERIAL,
         thickness: 1.0,
         cracks: vec![
-            crack("crack-1", &[(0.0, 1.0), (0.7, 1.0), (1.0, 1.3)], false),
-            crack("b", &[(1.3, 1.9), (2.0, 1.7)], true),
+            crack("crack-1", &[(0.0, 1.0), (0.7, 1.0), (1.0, 1.3)], EndKind::Mouth),
+            crack("b", &[(1.3, 1.9), (2.0, 1.7)], EndKind::Tip),
         ],
         loads: vec![
             BoundaryLoad { part: Some(top), value: TractionValue::Components([20.0.into(), 100.0.into()]) },

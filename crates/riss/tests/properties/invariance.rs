@@ -2,6 +2,7 @@
 
 use crate::bodies::*;
 use riss::analysis::{Settings, StaticResult};
+use riss::crack::EndKind::{Mouth, Tip};
 use riss::geometry::curve::Curve;
 use riss::material::PlaneState;
 use riss::math::{Matrix2, Vector2};
@@ -37,7 +38,7 @@ fn plate(motion: Motion, stress: f64) -> Model {
     let sides = (0..4).map(|k| Curve::Line { start: corners[k], end: corners[(k + 1) % 4] }).collect();
     let domain = riss::model::Domain::new(sides, vec![]);
     let mut model = body(domain, PlaneState::Strain);
-    let mut path = crack(&[(0.7, 1.3), (1.25, 1.65)], true, true);
+    let mut path = crack(&[(0.7, 1.3), (1.25, 1.65)], [Tip; 2]);
     path.vertices.iter_mut().for_each(|v| *v = motion.point(*v));
     model.cracks.push(path);
     let rotation = motion.linear / motion.linear.determinant().abs().sqrt();
@@ -136,7 +137,7 @@ fn mirrored() {
 #[test]
 fn same_bits_for_any_number_of_threads() {
     let mut model = body(rectangle((0.0, 0.0), (2.0, 3.0)), PlaneState::Stress);
-    model.cracks.push(crack(&[(0.0, 1.4), (0.6, 1.5), (0.9, 1.8)], false, true));
+    model.cracks.push(crack(&[(0.0, 1.4), (0.6, 1.5), (0.9, 1.8)], [Mouth, Tip]));
     hold(&mut model, BOTTOM, Direction::Y, 0.0);
     model.point_supports.push(PointSupport { at: Vector2::new(0.0, 0.0), displacement: [Some(0.0), None] });
     let pull = TractionValue::Components([ScalarField::Constant(0.2), ScalarField::Constant(1.0)]);

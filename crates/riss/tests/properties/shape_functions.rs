@@ -10,6 +10,7 @@ use riss::approximation::{
     ApproximationSettings, Basis, MovingLeastSquares, ShapeFunctions, SupportShape, Surroundings, WeightFunction,
 };
 use riss::crack::CrackPath;
+use riss::crack::EndKind::Tip;
 use riss::geometry::predicates::distance_to_segment;
 use riss::material::PlaneState;
 use riss::math::{Matrix2, Vector2, cross};
@@ -28,7 +29,7 @@ fn cracks() -> impl Strategy<Value = CrackPath> {
     let first = (0.2..0.4, 0.3..0.7);
     let middle = (0.45..0.55, 0.3..0.7);
     let last = (0.6..0.8, 0.3..0.7);
-    (first, middle, last).prop_map(|(a, b, c)| crack(&[a, b, c], true, true))
+    (first, middle, last).prop_map(|(a, b, c)| crack(&[a, b, c], [Tip; 2]))
 }
 
 fn approximations() -> impl Strategy<Value = ApproximationSettings> {

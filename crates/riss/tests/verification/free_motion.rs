@@ -2,6 +2,7 @@
 
 use crate::bodies::*;
 use riss::analysis::{Settings, Silent, linear_static};
+use riss::crack::EndKind::Mouth;
 use riss::error::Error;
 use riss::material::PlaneState;
 use riss::math::Vector2;
@@ -62,7 +63,7 @@ fn a_piece_cut_off_by_a_crack() {
     for direction in BOTH {
         hold(&mut model, BOTTOM, direction, 0.0);
     }
-    model.cracks.push(crack(&[(0.0, 1.2), (2.0, 1.2)], false, false));
+    model.cracks.push(crack(&[(0.0, 1.2), (2.0, 1.2)], [Mouth; 2]));
     let (motion, component) = free_motion(&model);
     assert_eq!(motion, "every motion (two translations and the rotation)");
     assert!(component.expect("the body falls into two").y > 1.2);

@@ -6,6 +6,7 @@
 use crate::bodies::*;
 use riss::analysis::{Settings, StaticResult};
 use riss::approximation::{ApproximationSettings, Basis, SupportShape, WeightFunction};
+use riss::crack::EndKind::{Mouth, Tip};
 use riss::exact::{ExactField, LinearField};
 use riss::geometry::curve::Curve;
 use riss::integration::{GradientCorrection, IntegrationSettings, Scheme};
@@ -168,13 +169,13 @@ fn penalty_error_falls_with_the_factor() {
 #[test]
 fn tension_along_cracks() {
     for plane in PLANES {
-        for (angle, vertices, start_is_tip) in [
-            (0.0, [(0.53, 1.03), (1.42, 1.03)], true),
-            (0.0, [(0.0, 0.91), (1.1, 0.91)], false),
-            (0.5, [(0.6, 0.7), (0.6 + 0.9 * 0.5f64.cos(), 0.7 + 0.9 * 0.5f64.sin())], true),
+        for (angle, vertices, start) in [
+            (0.0, [(0.53, 1.03), (1.42, 1.03)], Tip),
+            (0.0, [(0.0, 0.91), (1.1, 0.91)], Mouth),
+            (0.5, [(0.6, 0.7), (0.6 + 0.9 * 0.5f64.cos(), 0.7 + 0.9 * 0.5f64.sin())], Tip),
         ] {
             let mut model = body(square(), plane);
-            model.cracks.push(crack(&vertices, start_is_tip, true));
+            model.cracks.push(crack(&vertices, [start, Tip]));
             let field = tension_along(angle, &model.material);
             for nodes in [structured(10, 12), graded_to(0.25, 0.06), random_nodes(&square(), 10, 3)] {
                 for method in [NITSCHE, ConstraintMethod::LagrangeMultipliers] {
@@ -190,7 +191,7 @@ fn tension_along_cracks() {
 #[test]
 fn all_bases_weights_and_supports() {
     let mut model = body(square(), PlaneState::Strain);
-    model.cracks.push(crack(&[(0.53, 1.03), (1.42, 1.03)], true, true));
+    model.cracks.push(crack(&[(0.53, 1.03), (1.42, 1.03)], [Tip; 2]));
     let field = tension_along(0.0, &model.material);
     for (basis, bound) in [(Basis::Linear, ROUNDING), (Basis::Quadratic, 10.0 * ROUNDING)] {
         for weight_function in [WeightFunction::Gaussian, WeightFunction::QuarticSpline, WeightFunction::CubicSpline] {
@@ -229,7 +230,7 @@ fn check_tractions(
 ) {
     for nodes in [structured(9, 9), graded(0.22), random_nodes(&domain, 9, 5)] {
         let mut model = body(domain.clone(), plane);
-        model.cracks.extend(crack_ends.map(|ends| crack(&ends, true, true)));
+        model.cracks.extend(crack_ends.map(|ends| crack(&ends, [Tip; 2])));
         model.loads.push(BoundaryLoad { part: None, value: TractionValue::UniformStress(stress) });
         model.rigid_motion = RigidMotion::MeanIsZero;
         // Mean displacement and rotation of a pure strain vanish about the center of a square or a disk.
@@ -271,7 +272,7 @@ fn plain_gauss_integration_and_background_cells_fail_the_patch_test_slightly() {
         ];
         for ((scheme, gradient_correction), bound) in schemes.into_iter().zip(bounds) {
             let mut model = body(square(), PlaneState::Strain);
-            model.cracks.extend(with_crack.then(|| crack(&[(0.53, 1.03), (1.42, 1.03)], true, true)));
+            model.cracks.extend(with_crack.then(|| crack(&[(0.53, 1.03), (1.42, 1.03)], [Tip; 2])));
             let field = tension_along(0.0, &model.material);
             let error = energy_error(model, field, |s| {
                 s.nodes = nodes.clone();

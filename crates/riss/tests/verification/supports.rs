@@ -2,6 +2,7 @@
 
 use crate::bodies::*;
 use riss::analysis::Settings;
+use riss::crack::EndKind::{Mouth, Tip};
 use riss::exact::LinearField;
 use riss::geometry::curve::Curve;
 use riss::material::PlaneState;
@@ -112,7 +113,7 @@ fn held_block() -> Model {
     for direction in BOTH {
         hold(&mut model, BOTTOM, direction, 0.0);
     }
-    model.cracks.push(crack(&[(0.0, 0.9), (0.8, 0.9)], false, true));
+    model.cracks.push(crack(&[(0.0, 0.9), (0.8, 0.9)], [Mouth, Tip]));
     let pull = TractionValue::Components([ScalarField::Constant(0.3), ScalarField::Constant(1.2)]);
     model.loads.push(BoundaryLoad { part: Some(TOP), value: pull });
     model

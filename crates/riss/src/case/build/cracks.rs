@@ -4,7 +4,7 @@ use super::crossings::{Segment, first_contact, folds_back, meeting_parameters};
 use super::outline::vector;
 use super::report::Report;
 use crate::case::schema;
-use crate::crack::CrackPath;
+use crate::crack::{CrackPath, EndKind};
 use crate::geometry::curve::Curve;
 use crate::math::Vector2;
 use crate::model::Domain;
@@ -31,10 +31,9 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
         }
         names.push(name.clone());
         let Some((vertices, key)) = vertices(crack, &key, domain, report) else { continue };
-        let mut builder = Builder { domain, size, key, vertices, is_tip: [true; 2] };
+        let mut builder = Builder { domain, size, key, vertices, ends: [EndKind::Tip; 2] };
         if builder.is_simple(report) && builder.place_ends(report) && builder.is_inside(report) {
-            let [start_is_tip, end_is_tip] = builder.is_tip;
-            paths.push((index, CrackPath { name, vertices: builder.vertices, start_is_tip, end_is_tip }));
+            paths.push((index, CrackPath { name, vertices: builder.vertices, ends: builder.ends }));
         }
     }
     check_apart(&paths, size, report);
@@ -94,7 +93,7 @@ struct Builder<'a> {
     size: f64,
     key: String,
     vertices: Vec<Vector2>,
-    is_tip: [bool; 2],
+    ends: [EndKind; 2],
 }
 
 impl Builder<'_> {
@@ -152,7 +151,7 @@ impl Builder<'_> {
         let (p, q) = (self.vertices[k], self.vertices[inner]);
         if self.domain.distance_to_boundary(p) <= self.tolerance() {
             self.vertices[k] = snapped(self.domain, p);
-            self.is_tip[end] = false;
+            self.ends[end] = EndKind::Mouth;
             return true;
         }
         if self.domain.contains(p) {
@@ -173,7 +172,7 @@ impl Builder<'_> {
             return false;
         }
         self.vertices[k] = snapped(self.domain, mouth);
-        self.is_tip[end] = false;
+        self.ends[end] = EndKind::Mouth;
         let mouth = self.vertices[k];
         report.note(key, format!("this end of the crack is clipped at the boundary, at [{}, {}]", mouth.x, mouth.y));
         true
@@ -205,9 +204,9 @@ impl Builder<'_> {
         let last = self.vertices.len() - 1;
         // Shallow mouths meet the boundary within a wider tolerance.
         let at_mouth = |p: Vector2| {
-            [(0, 0), (1, last)]
-                .iter()
-                .any(|&(end, k)| !self.is_tip[end] && (p - self.vertices[k]).norm() <= 10.0 * self.tolerance())
+            [(0, 0), (1, last)].iter().any(|&(end, k)| {
+                self.ends[end] == EndKind::Mouth && (p - self.vertices[k]).norm() <= 10.0 * self.tolerance()
+            })
         };
         let cut = self.cuts().into_iter().find(|c| !at_mouth(c.1));
         let Some((k, p, edge)) = cut else {
