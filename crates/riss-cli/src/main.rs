@@ -2,9 +2,11 @@
 
 mod check;
 mod diagnostics;
+mod grow;
 mod new;
 mod progress;
 mod results;
+mod resume;
 mod run;
 mod schema;
 mod table;
@@ -20,7 +22,7 @@ const STOPPED: u8 = 1;
 /// The case or the command line is wrong.
 const BAD_CASE: u8 = 2;
 
-/// Cracks in solids with meshfree methods: stress intensity factors, J and T-stress of a case file.
+/// Cracks in solids with meshfree methods: stress intensity factors, J, T-stress and crack growth of a case file.
 #[derive(Parser)]
 #[command(version, after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage.")]
 struct Cli {

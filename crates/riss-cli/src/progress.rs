@@ -15,6 +15,8 @@ pub struct Progress {
     current: Option<(Stage, Instant)>,
     /// Time of each stage by name [s].
     pub stage_time_s: Vec<(String, f64)>,
+    /// Stages whose time was taken already.
+    taken: usize,
 }
 
 enum Display {
@@ -31,7 +33,7 @@ impl Progress {
             (false, true) => Display::Bar(spinner()),
             (false, false) => Display::Lines,
         };
-        Self { display, start: Instant::now(), current: None, stage_time_s: vec![] }
+        Self { display, start: Instant::now(), current: None, stage_time_s: vec![], taken: 0 }
     }
 
     /// Ends the last stage and clears the terminal; returns the time since the start [s].
@@ -41,6 +43,27 @@ impl Progress {
             bar.finish_and_clear();
         }
         self.start.elapsed().as_secs_f64()
+    }
+
+    /// Time since the start [s].
+    pub fn elapsed_s(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Time of the stages since this was asked for last [s].
+    pub fn take_stages(&mut self) -> Vec<(String, f64)> {
+        self.end_stage();
+        let new = self.stage_time_s[self.taken..].to_vec();
+        self.taken = self.stage_time_s.len();
+        new
+    }
+
+    /// Shows a line above the progress.
+    pub fn line(&self, text: &str) {
+        match &self.display {
+            Display::Bar(bar) => bar.suspend(|| crate::print(&format!("{text}\n"))),
+            Display::Lines | Display::Nothing => crate::print(&format!("{text}\n")),
+        }
     }
 
     fn end_stage(&mut self) {
@@ -55,7 +78,8 @@ impl Observer for Progress {
         self.end_stage();
         match &self.display {
             Display::Bar(bar) => bar.set_message(stage.name()),
-            Display::Lines => eprintln!("{}", stage.name()),
+            Display::Lines if self.taken == 0 => eprintln!("{}", stage.name()),
+            Display::Lines => {}
             Display::Nothing => {}
         }
         self.current = Some((stage, Instant::now()));

@@ -19,11 +19,12 @@ pub struct RunRecord {
 }
 
 impl RunRecord {
-    fn info(&self, case: &Case) -> RunInfo {
+    /// For the output of the library.
+    pub fn info(&self, case: &Case, status: RunStatus) -> RunInfo {
         RunInfo {
             title: case.model.title.clone(),
             method: "element-free-galerkin".into(),
-            status: RunStatus::Done,
+            status,
             wall_time_s: self.wall_time_s,
             stage_time_s: self.stage_time_s.clone(),
             peak_memory_bytes: self.peak_memory_bytes,
@@ -56,10 +57,13 @@ pub fn reason(error: &io::Error) -> String {
 
 /// Writes all files of a run into `dir`; returns their paths.
 pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> io::Result<Vec<PathBuf>> {
+    write_results(dir, &run.info(case, RunStatus::Done), result, &options(case))
+}
+
+/// What a case wants to be written.
+pub fn options(case: &Case) -> OutputOptions {
     let output = &case.output;
-    let options =
-        OutputOptions { fields: output.fields, nodes: output.nodes, integration_points: output.integration_points };
-    write_results(dir, &run.info(case), result, &options)
+    OutputOptions { fields: output.fields, nodes: output.nodes, integration_points: output.integration_points }
 }
 
 /// Draws the body with its nodes and cells into `dir`; returns the path.
@@ -71,7 +75,7 @@ pub fn write_picture(dir: &Path, model: &Model, discrete: &Discretization) -> io
 
 /// The results as JSON.
 pub fn json(case: &Case, run: &RunRecord, result: &StaticResult) -> String {
-    results_json(&run.info(case), result)
+    results_json(&run.info(case, RunStatus::Done), result)
 }
 
 /// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.

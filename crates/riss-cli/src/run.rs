@@ -1,7 +1,9 @@
 //! `riss run`.
 
+use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
+use crate::resume::{self, Resumed};
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
@@ -12,8 +14,15 @@ use std::path::{Path, PathBuf};
 /// Arguments of `riss run`.
 #[derive(Args)]
 pub struct RunArguments {
-    /// Case file
-    pub case: PathBuf,
+    /// Case file; not needed with --resume
+    #[arg(required_unless_present = "resume")]
+    pub case: Option<PathBuf>,
+    /// Goes on with the growth in a folder of results, with the growth settings that the case has now
+    #[arg(long, value_name = "DIR", conflicts_with = "out")]
+    pub resume: Option<PathBuf>,
+    /// Step to go on from [default: the last that is finished]
+    #[arg(long, value_name = "N", requires = "resume")]
+    pub from_step: Option<usize>,
     /// Folder for the results [default: NAME.riss-out in the current folder]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -33,7 +42,14 @@ pub struct RunArguments {
 
 /// Runs a case; returns the exit code.
 pub fn run(arguments: &RunArguments) -> u8 {
-    let case = match Case::read(&arguments.case, &arguments.overrides) {
+    let known = match arguments.resume.as_deref().map(Resumed::read).transpose() {
+        Ok(known) => known,
+        Err(message) => return refuse(&message),
+    };
+    let overrides = known.as_ref().map_or(vec![], |k| k.overrides.clone());
+    let overrides: Vec<String> = overrides.into_iter().chain(arguments.overrides.iter().cloned()).collect();
+    let path = arguments.case.clone().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
+    let case = match Case::read(&path, &overrides) {
         Ok(case) => case,
         Err(errors) => {
             diagnostics::report_errors(&errors);
@@ -46,22 +62,47 @@ pub fn run(arguments: &RunArguments) -> u8 {
     if let Some(n) = arguments.threads
         && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()
     {
-        eprintln!("error: cannot start {n} threads: {e}");
-        return BAD_CASE;
+        return refuse(&format!("cannot start {n} threads: {e}"));
     }
+    let dir = match &arguments.resume {
+        Some(dir) => dir.clone(),
+        None => arguments.out.clone().unwrap_or_else(|| results::default_folder(&path)),
+    };
     // Before hours of work, not after.
-    let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
     if let Err(e) = results::prepare(&dir) {
         return cannot_write(&dir, &e);
     }
-    let mut progress = Progress::new(arguments.quiet);
+    let progress = Progress::new(arguments.quiet);
+    match (&case.growth, known) {
+        (None, None) => run_static(arguments, &case, &dir, progress),
+        (None, Some(_)) => refuse("the case has no [growth]: there is nothing to go on with"),
+        (Some(growth), known) => {
+            let beginning = match &known {
+                Some(known) => known.beginning(&case, &dir, arguments.from_step),
+                None => resume::begin(&case, &dir),
+            };
+            let speech = if arguments.json { Speech::Json } else { Speech::Table };
+            match beginning {
+                Ok(beginning) => grow::grow(&case, growth, beginning, &dir, progress, speech),
+                Err(message) => refuse(&message),
+            }
+        }
+    }
+}
+
+fn refuse(message: &str) -> u8 {
+    eprintln!("error: {message}");
+    BAD_CASE
+}
+
+fn run_static(arguments: &RunArguments, case: &Case, dir: &Path, mut progress: Progress) -> u8 {
     let outcome = linear_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();
     match outcome {
         Ok(result) => {
             let stage_time_s = std::mem::take(&mut progress.stage_time_s);
             let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
-            deliver(arguments, &dir, &case, &run, &result)
+            deliver(arguments, dir, case, &run, &result)
         }
         Err(error) => {
             eprintln!("error: {error}");

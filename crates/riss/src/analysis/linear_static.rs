@@ -21,6 +21,22 @@ const STABILIZATION_GROWTH: f64 = 10.0;
 /// # Errors
 /// Every variant of [`Error`]; tips without room for a domain are reported, not refused.
 pub fn linear_static(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<StaticResult> {
+    let result = solve_step(model, settings, 0, observer)?;
+    // There is nothing left to break off.
+    let _ = observer.step(&result, None);
+    Ok(result)
+}
+
+/// The static solution that is one step of an analysis.
+///
+/// # Errors
+/// Those of [`linear_static`].
+pub(super) fn solve_step(
+    model: &Model,
+    settings: &Settings,
+    step: usize,
+    observer: &mut dyn Observer,
+) -> Result<StaticResult> {
     let mut warnings = Warnings { observer, list: vec![] };
     let discrete = discretize(model, settings, warnings.observer)?;
     let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
@@ -34,10 +50,12 @@ pub fn linear_static(model: &Model, settings: &Settings, observer: &mut dyn Obse
     let cracks = evaluate_cracks(model, settings, &discrete, &solution, &mut warnings)?;
     warnings.observer.stage(Stage::Fields);
     let energy = strain_energy(model, &discrete, &solution)?;
-    let fields = sample_fields(model, &discrete, &solution)?;
+    let fields = match warnings.observer.wants_fields(step) {
+        true => sample_fields(model, &discrete, &solution)?,
+        false => Fields::default(),
+    };
     let reactions = reactions(model, &discrete, &solution, &method)?;
-    let step = StepRecord { step: 0, load_factor: 1.0, cycles: None, cracks, reactions };
-    warnings.observer.step(&step);
+    let step = StepRecord { step, load_factor: 1.0, cycles: None, stability: None, end: None, cracks, reactions };
     let nodes = discrete.approximation.nodes();
     let node_records = (0..nodes.len()).map(|i| NodeRecord {
         position: nodes.positions[i],
@@ -120,7 +138,8 @@ fn evaluate_cracks(
         for end in path.tip_ends() {
             tips.push(evaluate_tip(model, settings, discrete, solution, TipId { crack, end }, warnings)?);
         }
-        records.push(CrackRecord { name: path.name.clone(), path: path.vertices.clone(), tips });
+        let (name, ends) = (path.name.clone(), path.ends);
+        records.push(CrackRecord { name, path: path.vertices.clone(), ends, tips });
     }
     Ok(records)
 }
@@ -134,20 +153,7 @@ fn evaluate_tip(
     warnings: &mut Warnings,
 ) -> Result<TipRecord> {
     let view = TipView::new(model, id);
-    let mut record = TipRecord {
-        end: id.end,
-        position: view.frame.position,
-        angle: view.frame.angle,
-        k1: None,
-        k2: None,
-        k_uncertainty: None,
-        j: None,
-        t_stress: None,
-        configurational_force: None,
-        kink_angle: None,
-        status: TipStatus::NotEvaluated,
-        radii: vec![],
-    };
+    let mut record = TipRecord::unknown(id.end, view.frame);
     let radii = match view.radii(settings.fracture.domain, settings.fracture.radii.as_deref()) {
         Ok((radii, note)) => {
             note.into_iter().for_each(|n| warnings.add(n));

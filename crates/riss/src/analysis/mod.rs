@@ -1,11 +1,13 @@
 //! Analyses: they join all the stages below and report to an [`Observer`].
 
+pub mod crack_growth;
 pub mod energy;
 pub mod fields;
 pub mod linear_static;
 pub mod record;
 pub mod settings;
 
+pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
 pub use record::*;
 pub use settings::Settings;

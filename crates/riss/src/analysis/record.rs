@@ -1,9 +1,11 @@
 //! What an analysis reports.
 
-use crate::crack::End;
+use super::crack_growth::GrowthState;
+use crate::crack::{End, EndKind, TipFrame};
 use crate::math::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// Stages of an analysis, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,8 +44,14 @@ pub trait Observer {
     fn stage(&mut self, _stage: Stage) {}
     /// Something the user should know.
     fn warning(&mut self, _warning: &Warning) {}
-    /// A step is complete.
-    fn step(&mut self, _step: &StepRecord) {}
+    /// Whether fields shall be sampled in a step: they cost about as much as assembly.
+    fn wants_fields(&self, _step: usize) -> bool {
+        true
+    }
+    /// A step is complete. A break ends the analysis there.
+    fn step(&mut self, _result: &StaticResult, _state: Option<&GrowthState>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// Hears nothing.
@@ -64,10 +72,14 @@ pub struct Warning {
 pub struct StepRecord {
     /// Number of the step, from 0.
     pub step: usize,
-    /// Factor on the loads.
+    /// Factor on the loads at which the crack grows; 1 unless growth is quasi-static. All else is for a factor of 1.
     pub load_factor: f64,
     /// Load cycles so far, in fatigue.
     pub cycles: Option<f64>,
+    /// Whether the load must rise for the crack to go on, in quasi-static growth from the second step on.
+    pub stability: Option<Stability>,
+    /// Why growth ends with this step, if it does.
+    pub end: Option<GrowthEnd>,
     /// Every crack, in the order of the case.
     pub cracks: Vec<CrackRecord>,
     /// Force of each supported part on the body, by name, over the thickness.
@@ -81,6 +93,8 @@ pub struct CrackRecord {
     pub name: String,
     /// Its path.
     pub path: Vec<Vector2>,
+    /// What its first and last vertex are.
+    pub ends: [EndKind; 2],
     /// Its tips.
     pub tips: Vec<TipRecord>,
 }
@@ -108,10 +122,42 @@ pub struct TipRecord {
     pub configurational_force: Option<Vector2>,
     /// Angle of the next increment against the direction ahead, counterclockwise [rad].
     pub kink_angle: Option<f64>,
+    /// Mode I factor that drives as hard as both modes together [stress·√length].
+    pub k_equivalent: Option<f64>,
+    /// Length of the next increment [length]; 0 for a tip that stays.
+    pub increment: Option<f64>,
+    /// Growth per cycle in fatigue [length].
+    pub growth_rate: Option<f64>,
     /// What the tip does.
     pub status: TipStatus,
+    /// Why, in words with numbers, where growth was asked for.
+    pub reason: Option<String>,
     /// Radii of the integration domains that were used [length].
     pub radii: Vec<f64>,
+}
+
+impl TipRecord {
+    /// A tip of which only the place is known.
+    pub fn unknown(end: End, frame: TipFrame) -> Self {
+        Self {
+            end,
+            position: frame.position,
+            angle: frame.angle,
+            k1: None,
+            k2: None,
+            k_uncertainty: None,
+            j: None,
+            t_stress: None,
+            configurational_force: None,
+            kink_angle: None,
+            k_equivalent: None,
+            increment: None,
+            growth_rate: None,
+            status: TipStatus::NotEvaluated,
+            reason: None,
+            radii: vec![],
+        }
+    }
 }
 
 /// What a tip does.
@@ -124,6 +170,60 @@ pub enum TipStatus {
     Closed,
     /// No integration domain fits: fracture quantities are absent.
     NotEvaluated,
+    /// Grows to the next step.
+    Growing,
+    /// Another tip is driven harder and grows in its place.
+    Waiting,
+    /// Below the fatigue threshold.
+    Arrested,
+    /// At the fracture toughness under cyclic loading: the rest of the life is not counted in cycles.
+    Unstable,
+    /// Not allowed to grow by the case.
+    Held,
+    /// Its increment ends at the outline.
+    ReachedBoundary,
+    /// Its increment ends in a hole.
+    ReachedHole,
+    /// Its increment ends at a crack.
+    ReachedCrack,
+}
+
+/// What the load does as a crack goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stability {
+    /// It must rise.
+    Stable,
+    /// It falls: under a load that stays, the crack runs on.
+    Unstable,
+}
+
+/// Why crack growth ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GrowthEnd {
+    /// The kind of end.
+    pub kind: GrowthEndKind,
+    /// In words with numbers.
+    pub reason: String,
+}
+
+/// Kinds of ends of crack growth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum GrowthEndKind {
+    /// All steps that were asked for are done.
+    StepsDone,
+    /// No tip grows any more.
+    NoTipGrows,
+    /// The body has fallen into pieces that nothing holds.
+    Separated,
+    /// Fatigue has reached the fracture toughness.
+    ToughnessReached,
+    /// A limit of `growth.stop` is reached.
+    LimitReached,
+    /// The body with the longer cracks could not be analyzed.
+    Failed,
 }
 
 impl TipStatus {
@@ -133,6 +233,14 @@ impl TipStatus {
             Self::Stationary => "stationary",
             Self::Closed => "closed",
             Self::NotEvaluated => "not-evaluated",
+            Self::Growing => "growing",
+            Self::Waiting => "waiting",
+            Self::Arrested => "arrested",
+            Self::Unstable => "unstable",
+            Self::Held => "held",
+            Self::ReachedBoundary => "reached-boundary",
+            Self::ReachedHole => "reached-hole",
+            Self::ReachedCrack => "reached-crack",
         }
     }
 }
@@ -162,6 +270,25 @@ pub struct StaticResult {
     pub integration_points: Vec<(Vector2, f64)>,
     /// All warnings, in order.
     pub warnings: Vec<Warning>,
+}
+
+impl StaticResult {
+    /// A step without a solution.
+    pub fn unsolved(step: StepRecord) -> Self {
+        Self {
+            step,
+            n_nodes: 0,
+            n_unknowns: 0,
+            n_integration_points: 0,
+            strain_energy: f64::NAN,
+            energy_error: None,
+            residual: f64::NAN,
+            fields: Fields::default(),
+            nodes: vec![],
+            integration_points: vec![],
+            warnings: vec![],
+        }
+    }
 }
 
 /// A node as output shows it.

@@ -6,7 +6,18 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// Tables with one key, which names a kind: an override with another kind replaces it.
-const CHOICES: [&str; 5] = ["geometry", "exact", "constraints", "nodes.layout", "integration.scheme"];
+const CHOICES: [&str; 10] = [
+    "geometry",
+    "exact",
+    "constraints",
+    "nodes.layout",
+    "integration.scheme",
+    "growth.criterion",
+    "growth.law",
+    "growth.law.fatigue.rate",
+    "growth.law.fatigue.spectrum",
+    "growth.control",
+];
 
 /// A value with its place.
 #[derive(Clone, Debug)]

@@ -11,7 +11,7 @@ pub mod gmsh;
 mod problem;
 mod schema;
 
-use crate::analysis::Settings;
+use crate::analysis::{GrowthSettings, Settings};
 use crate::model::Model;
 use document::Document;
 pub use problem::{CaseErrors, Origin, Problem};
@@ -43,6 +43,8 @@ pub struct Case {
     pub model: Model,
     /// Numerical choices.
     pub settings: Settings,
+    /// Crack growth, if the cracks grow.
+    pub growth: Option<GrowthSettings>,
     /// What to write.
     pub output: OutputSettings,
     /// The case file.
@@ -81,9 +83,10 @@ impl Case {
         let document = Document::parse(text, overrides, &mut problems);
         let built = if problems.is_empty() { build::build(&document, path, &mut problems) } else { None };
         match built {
-            Some((model, settings, output, notes)) if problems.is_empty() => Ok(Self {
+            Some((model, settings, growth, output, notes)) if problems.is_empty() => Ok(Self {
                 model,
                 settings,
+                growth,
                 output,
                 path: path.into(),
                 text: text.into(),
@@ -98,6 +101,16 @@ impl Case {
                 Err(CaseErrors { file: path.into(), text: text.into(), overrides: overrides.to_vec(), problems })
             }
         }
+    }
+
+    /// The first top-level key, apart from `growth`, `output` and `title`, in which another case says something else.
+    pub fn differs_outside_growth(&self, other: &Self) -> Option<String> {
+        let tree = |case: &Self| Document::parse(&case.text, &case.overrides, &mut vec![]).to_toml();
+        let (mine, yours) = (tree(self), tree(other));
+        let mut keys: Vec<&String> = mine.keys().chain(yours.keys()).collect();
+        keys.sort();
+        let may_change = |key: &str| ["growth", "output", "title"].contains(&key);
+        keys.into_iter().find(|k| !may_change(k) && mine.get(*k) != yours.get(*k)).cloned()
     }
 
     /// Where a note stands, such as `case.toml:3:9`.

@@ -1,6 +1,7 @@
 //! A crack in the plane: a polyline from its start to its end.
 
 use super::tip::TipFrame;
+use crate::geometry::predicates::distance_to_segment;
 use crate::math::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -38,7 +39,8 @@ pub enum EndKind {
 }
 
 /// A polyline whose ends are tips, unless they lie on the boundary of the body or on a crack.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct CrackPath {
     /// Name in the case file and the results.
     pub name: String,
@@ -94,6 +96,33 @@ impl CrackPath {
         let backwards = self.from_end(end);
         let d = backwards[0] - backwards[1];
         TipFrame { position: backwards[0], angle: d.y.atan2(d.x) }
+    }
+
+    /// Lengthens the path beyond a tip by the given vertices; the new end is of the given kind.
+    pub fn extend(&mut self, end: End, vertices: &[Vector2], kind: EndKind) {
+        match end {
+            End::Start => {
+                self.vertices.splice(0..0, vertices.iter().rev().copied());
+            }
+            End::End => self.vertices.extend_from_slice(vertices),
+        }
+        self.ends[end.index()] = kind;
+    }
+
+    /// Makes a point of the path a vertex, for a crack that ends there. An end of the path there is a tip no longer.
+    pub fn join_at(&mut self, p: Vector2) {
+        for end in [End::Start, End::End] {
+            if self.end_position(end) == p && self.end_kind(end) == EndKind::Tip {
+                self.ends[end.index()] = EndKind::Junction;
+            }
+        }
+        let away = |k: &usize| distance_to_segment(p, self.vertices[*k], self.vertices[k + 1]);
+        let inside = (0..self.vertices.len() - 1).filter(|&k| self.vertices[k] != p && self.vertices[k + 1] != p);
+        let Some(nearest) = inside.min_by(|a, b| away(a).total_cmp(&away(b))) else { return };
+        // A path that returns to itself has its end there, too.
+        if !self.vertices.contains(&p) || away(&nearest) <= 1e-9 * self.length() {
+            self.vertices.insert(nearest + 1, p);
+        }
     }
 
     /// The vertices in order from an end into the crack.

@@ -2,9 +2,11 @@
 
 use super::path::End;
 use crate::math::{Vector2, direction, turn_left};
+use serde::{Deserialize, Serialize};
 
 /// A tip by crack and end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TipId {
     /// Index of the crack in the model.
     pub crack: usize,

@@ -2,10 +2,13 @@
 //!
 //! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] evaluates them.
 
+pub mod fatigue;
+pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;
 
+pub use growth_criterion::{EquivalentFactor, GrowthCriterion, TipDriving};
 pub use interaction_integral::{ForceAt, GradientField, SolutionField, TipIntegrals, tip_integrals};
 pub use settings::{FractureSettings, JIntegral, TipDomainShape};
 pub use tip_domain::TipView;

@@ -1,7 +1,7 @@
 //! Straight and circular pieces of a boundary or a crack.
 
 use super::aabb::Aabb;
-use crate::math::{Vector2, direction, turn_left};
+use crate::math::{Vector2, cross, direction, turn_left};
 use std::f64::consts::TAU;
 
 /// A straight segment or a circular arc, run through by a parameter from 0 to 1 at constant speed.
@@ -36,7 +36,7 @@ impl Curve {
     /// The arc from `start` through `middle` to `end`, or `None` if the three lie on a line.
     pub fn arc_through(start: Vector2, middle: Vector2, end: Vector2) -> Option<Self> {
         let (p, q) = (middle - start, end - start);
-        let d = 2.0 * crate::math::cross(p, q);
+        let d = 2.0 * cross(p, q);
         if d.abs() <= 1e-12 * p.norm() * q.norm() {
             return None;
         }
@@ -156,6 +156,32 @@ impl Curve {
         (0..=n).map(|k| self.point(k as f64 / n as f64)).collect()
     }
 
+    /// Parameters along the segment `a b` at which it meets the curve, ends included, to within `tolerance`.
+    pub fn meetings(&self, a: Vector2, b: Vector2, tolerance: f64) -> Vec<f64> {
+        let d = b - a;
+        let slack = tolerance / d.norm();
+        let candidates: Vec<f64> = match *self {
+            Self::Line { start, end } => {
+                let e = end - start;
+                let turn = cross(d, e);
+                if turn.abs() <= 1e-12 * d.norm() * e.norm() { vec![] } else { vec![cross(start - a, e) / turn] }
+            }
+            Self::Arc { center, radius, .. } => {
+                let to_center = center - a;
+                let foot = to_center.dot(&d) / d.norm_squared();
+                let height = (to_center - d * foot).norm();
+                if height > radius + tolerance {
+                    vec![]
+                } else {
+                    let half = (radius * radius - height * height).max(0.0).sqrt() / d.norm();
+                    vec![foot - half, foot + half]
+                }
+            }
+        };
+        let fits = |s: &f64| *s >= -slack && *s <= 1.0 + slack && self.distance(a + d * *s) <= 2.0 * tolerance;
+        candidates.into_iter().filter(fits).collect()
+    }
+
     /// Bounding box.
     pub fn aabb(&self) -> Aabb<2> {
         let mut bounds = Aabb::of_points([self.point(0.0), self.point(1.0)]);
@@ -174,9 +200,9 @@ impl Curve {
     /// Integral of `(x dy - y dx) / 2` along the curve: its share of the enclosed area.
     pub fn area_share(&self) -> f64 {
         match *self {
-            Self::Line { start, end } => 0.5 * crate::math::cross(start, end),
+            Self::Line { start, end } => 0.5 * cross(start, end),
             Self::Arc { center, radius, sweep, .. } => {
-                0.5 * (crate::math::cross(center, self.point(1.0) - self.point(0.0)) + radius * radius * sweep)
+                0.5 * (cross(center, self.point(1.0) - self.point(0.0)) + radius * radius * sweep)
             }
         }
     }

@@ -113,6 +113,21 @@ impl Domain {
         self.edges.iter().map(Curve::area_share).sum()
     }
 
+    /// The point of an edge that is closest to `p`; exact on edges along an axis.
+    pub fn on_edge(&self, edge: EdgeId, p: Vector2) -> Vector2 {
+        let curve = &self.edges[edge];
+        // A distance that underflows is zero, too: axes are set below even then.
+        let mut q = if curve.distance(p) == 0.0 { p } else { curve.point(curve.closest_parameter(p)) };
+        if let Curve::Line { start, end } = *curve {
+            for axis in 0..2 {
+                if start[axis] == end[axis] {
+                    q[axis] = start[axis];
+                }
+            }
+        }
+        q
+    }
+
     /// The edge and its parameter closest to `p`.
     pub fn closest_edge(&self, p: Vector2) -> (EdgeId, f64) {
         let edge = (0..self.edges.len())

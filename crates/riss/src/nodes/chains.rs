@@ -76,6 +76,8 @@ impl Chains {
                     mouths.iter().filter(|m| m.0 == edge && m.1 > near && m.1 < 1.0 - near).map(|m| (m.1, m.2)),
                 );
                 stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+                // Cracks may share a mouth.
+                stops.dedup_by(|a, b| a.1 == b.1);
                 let ends: Vec<f64> = stops.iter().map(|s| s.0).skip(1).chain([1.0]).collect();
                 for ((from, p), to) in stops.into_iter().zip(ends) {
                     let whole = (from, to) == (0.0, 1.0);

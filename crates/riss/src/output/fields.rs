@@ -3,18 +3,28 @@
 //! Warping by `displacement` deforms the body and opens the cracks in both.
 
 use super::OutputOptions;
-use super::vtk::{Array, CellType, Cells, collection, grid};
+use super::vtk::{Array, CellType, Cells, grid};
 use crate::analysis::{CrackFaces, Fields, NodeRecord, StaticResult};
 use crate::math::{Matrix2, Vector2, direction, turn_left};
 use std::io;
 
-/// Names and contents of the files of one step, and a collection for each kind of file.
+/// A file of one step.
+pub struct StepFile {
+    /// What it shows; files of one kind make a collection.
+    pub kind: &'static str,
+    /// Its name, with the step.
+    pub name: String,
+    /// What is in it.
+    pub content: Vec<u8>,
+}
+
+/// The files of one step.
 ///
 /// # Errors
 /// `InvalidData` if the arrays of the fields do not fit together.
-pub fn field_files(result: &StaticResult, options: &OutputOptions) -> io::Result<Vec<(String, Vec<u8>)>> {
+pub fn step_files(result: &StaticResult, options: &OutputOptions) -> io::Result<Vec<StepFile>> {
     let mut grids = vec![];
-    if options.fields {
+    if options.fields && !result.fields.positions.is_empty() {
         check(&result.fields)?;
         grids.push(("fields", body(&result.fields)));
         if !result.fields.crack_faces.is_empty() {
@@ -27,14 +37,16 @@ pub fn field_files(result: &StaticResult, options: &OutputOptions) -> io::Result
     if options.integration_points {
         grids.push(("integration_points", integration_points(&result.integration_points)));
     }
-    let step = result.step.step;
-    let mut files = vec![];
-    for (kind, content) in grids {
-        let name = format!("{kind}_{step:04}.vtu");
-        files.push((format!("{kind}.pvd"), collection(&[(step, name.clone())])));
-        files.push((name, content));
-    }
-    Ok(files)
+    let file = |(kind, content)| StepFile { kind, name: step_file_name(kind, result.step.step), content };
+    Ok(grids.into_iter().map(file).collect())
+}
+
+/// Kinds of files that a step may have.
+pub const STEP_FILE_KINDS: [&str; 4] = ["fields", "cracks", "nodes", "integration_points"];
+
+/// Name of a file of a step.
+pub fn step_file_name(kind: &str, step: usize) -> String {
+    format!("{kind}_{step:04}.vtu")
 }
 
 /// In-plane principal stresses, the greater first, and the unit direction of the greater.

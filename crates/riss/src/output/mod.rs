@@ -1,7 +1,8 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
-//! Only this folder writes. Knows no case files. Reading order: [`results`] (the contract), [`history`], [`fields`]
-//! with `vtk` below it, [`model_picture`] and [`field_picture`] with `svg` and `contours` below them, [`whole_file`].
+//! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
+//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`] and [`field_picture`] with `svg` and
+//! `contours` below them, [`whole_file`].
 
 mod color_map;
 mod contours;
@@ -10,6 +11,7 @@ pub mod fields;
 pub mod history;
 pub mod model_picture;
 pub mod results;
+pub mod run_writer;
 mod svg;
 mod vtk;
 pub mod whole_file;
@@ -17,14 +19,13 @@ pub mod whole_file;
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
 pub use results::{Results, RunStatus, results_json, results_schema};
+pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 
 use crate::analysis::StaticResult;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use whole_file::write_whole;
 
 /// Name of the file that is written last: where it stands, all others are complete.
 pub const RESULTS_FILE: &str = "results.json";
@@ -76,26 +77,6 @@ pub fn write_results(
     result: &StaticResult,
     options: &OutputOptions,
 ) -> io::Result<Vec<PathBuf>> {
-    fs::create_dir_all(dir)?;
-    match fs::remove_file(dir.join(RESULTS_FILE)) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
-        _ => {}
-    }
-    let mut files = vec![("history.csv".to_string(), history::history_csv(std::slice::from_ref(&result.step))?)];
-    files.extend(fields::field_files(result, options)?);
-    if options.fields {
-        let picture = field_picture::field_picture(result, FieldQuantity::VonMises)?;
-        files.push((PICTURE_FILE.into(), picture.into_bytes()));
-    }
-    let mut results = Results::new(info, result);
-    results.files = files.iter().map(|f| f.0.clone()).collect();
-    files.push((RESULTS_FILE.into(), results.to_json().into_bytes()));
-    files
-        .into_iter()
-        .map(|(name, content)| {
-            let path = dir.join(name);
-            write_whole(&path, &content)?;
-            Ok(path)
-        })
-        .collect()
+    let mut writer = RunWriter::new(dir, *options)?;
+    writer.write_step(info, result, &info.stage_time_s, None)
 }

@@ -3,8 +3,8 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::RunInfo;
-use crate::analysis::{CrackRecord, StaticResult, StepRecord, TipRecord, TipStatus};
-use crate::crack::End;
+use crate::analysis::{CrackRecord, GrowthEnd, Stability, StaticResult, StepRecord, TipRecord, TipStatus};
+use crate::crack::{End, EndKind};
 use crate::math::Vector2;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -23,11 +23,11 @@ pub struct Results {
     pub method: String,
     /// How the run ended.
     pub status: RunStatus,
-    /// Number of nodes.
+    /// Number of nodes in the last step.
     pub nodes: usize,
-    /// Number of unknowns, multipliers included.
+    /// Number of unknowns in the last step, multipliers included.
     pub unknowns: usize,
-    /// Number of integration points.
+    /// Number of integration points in the last step.
     pub integration_points: usize,
     /// Time from start to end [s].
     pub wall_time_s: Option<f64>,
@@ -35,16 +35,18 @@ pub struct Results {
     pub stage_time_s: BTreeMap<String, f64>,
     /// Greatest memory use.
     pub peak_memory_bytes: Option<u64>,
-    /// Strain energy over the thickness [stress·length³].
+    /// Strain energy over the thickness in the last step [stress·length³].
     pub strain_energy: Option<f64>,
     /// Energy norm of the error over that of the solution, where an exact field is named.
     pub energy_error: Option<f64>,
-    /// Relative residual of the linear system.
+    /// Relative residual of the linear system in the last step.
     pub residual: Option<f64>,
     /// All warnings, in order.
     pub warnings: Vec<String>,
     /// Names of the other files of this run, in the same folder.
     pub files: Vec<String>,
+    /// Why crack growth ended, where it did.
+    pub growth_end: Option<GrowthEnd>,
     /// Steps in order; a static run has one.
     pub steps: Vec<StepResults>,
 }
@@ -55,7 +57,7 @@ pub struct Results {
 pub enum RunStatus {
     /// As asked for.
     Done,
-    /// Early; what was found until then is there.
+    /// Early, or still running; what was found until then is there.
     Stopped,
 }
 
@@ -65,10 +67,20 @@ pub enum RunStatus {
 pub struct StepResults {
     /// Number of the step, from 0.
     pub step: usize,
-    /// Factor on the loads.
+    /// Factor on the loads at which the crack grows; 1 unless growth is quasi-static. All else is for a factor of 1.
     pub load_factor: Option<f64>,
     /// Load cycles so far, in fatigue.
     pub cycles: Option<f64>,
+    /// Whether the load must rise for the crack to go on, in quasi-static growth.
+    pub stability: Option<Stability>,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Strain energy over the thickness [stress·length³].
+    pub strain_energy: Option<f64>,
+    /// Time of each stage [s].
+    pub stage_time_s: BTreeMap<String, f64>,
+    /// Warnings of this step.
+    pub warnings: Vec<String>,
     /// Every crack, in the order of the case.
     pub cracks: Vec<CrackResults>,
     /// Force of each supported part on the body over the thickness, by name of the part.
@@ -83,6 +95,8 @@ pub struct CrackResults {
     pub name: String,
     /// Vertices of its path.
     pub path: Vec<[f64; 2]>,
+    /// What its first and its last vertex are.
+    pub ends: [EndKind; 2],
     /// Its tips.
     pub tips: Vec<TipResults>,
 }
@@ -116,8 +130,17 @@ pub struct TipResults {
     pub configurational_force: Option<[f64; 2]>,
     /// Angle of the next increment against the direction ahead, counterclockwise [degree].
     pub kink_angle_deg: Option<f64>,
+    /// Mode I factor that drives as hard as both modes together [stress·√length].
+    #[serde(rename = "K_equivalent")]
+    pub k_equivalent: Option<f64>,
+    /// Length of the next increment [length]; 0 for a tip that stays.
+    pub increment: Option<f64>,
+    /// Growth per cycle in fatigue [length].
+    pub growth_rate: Option<f64>,
     /// What the tip does.
     pub status: TipStatus,
+    /// Why, in words, where growth was asked for.
+    pub reason: Option<String>,
     /// Radii of the integration domains [length].
     pub domain_radii: Vec<f64>,
 }
@@ -125,10 +148,14 @@ pub struct TipResults {
 impl Results {
     /// The results of a static run; `files` is empty.
     pub fn new(info: &RunInfo, result: &StaticResult) -> Self {
-        let mut stage_time_s = BTreeMap::new();
-        for (stage, time) in &info.stage_time_s {
-            *stage_time_s.entry(stage.clone()).or_insert(0.0) += time;
-        }
+        let step = StepResults::new(result, &info.stage_time_s);
+        Self::of_steps(info, result, vec![step])
+    }
+
+    /// The results of a run of several steps; `last` is the last that was solved, `files` is empty.
+    pub fn of_steps(info: &RunInfo, last: &StaticResult, steps: Vec<StepResults>) -> Self {
+        let stage_time_s = sum_by_stage(&info.stage_time_s);
+        let result = last;
         Self {
             riss: env!("CARGO_PKG_VERSION").into(),
             case: info.title.clone(),
@@ -143,9 +170,10 @@ impl Results {
             strain_energy: finite(result.strain_energy),
             energy_error: result.energy_error.and_then(finite),
             residual: finite(result.residual),
-            warnings: result.warnings.iter().map(|w| w.message.clone()).collect(),
+            warnings: steps.iter().flat_map(|s| s.warnings.iter().cloned()).collect(),
             files: vec![],
-            steps: vec![StepResults::new(&result.step)],
+            growth_end: result.step.end.clone(),
+            steps,
         }
     }
 
@@ -157,11 +185,18 @@ impl Results {
 }
 
 impl StepResults {
-    fn new(step: &StepRecord) -> Self {
+    /// A step; the times are those of its stages.
+    pub fn new(result: &StaticResult, stage_time_s: &[(String, f64)]) -> Self {
+        let step: &StepRecord = &result.step;
         Self {
             step: step.step,
             load_factor: finite(step.load_factor),
             cycles: step.cycles.and_then(finite),
+            stability: step.stability,
+            nodes: result.n_nodes,
+            strain_energy: finite(result.strain_energy),
+            stage_time_s: sum_by_stage(stage_time_s),
+            warnings: result.warnings.iter().map(|w| w.message.clone()).collect(),
             cracks: step.cracks.iter().map(CrackResults::new).collect(),
             reactions: step.reactions.iter().map(|(part, force)| (part.clone(), finite_pair(*force))).collect(),
         }
@@ -173,13 +208,14 @@ impl CrackResults {
         Self {
             name: crack.name.clone(),
             path: crack.path.iter().map(|p| [p.x, p.y]).collect(),
+            ends: crack.ends,
             tips: crack.tips.iter().map(TipResults::new).collect(),
         }
     }
 }
 
 impl TipResults {
-    pub(super) fn new(tip: &TipRecord) -> Self {
+    fn new(tip: &TipRecord) -> Self {
         Self {
             end: tip.end,
             position: tip.position.into(),
@@ -191,7 +227,11 @@ impl TipResults {
             t_stress: tip.t_stress.and_then(finite),
             configurational_force: tip.configurational_force.and_then(finite_pair),
             kink_angle_deg: tip.kink_angle.and_then(finite).map(f64::to_degrees),
+            k_equivalent: tip.k_equivalent.and_then(finite),
+            increment: tip.increment.and_then(finite),
+            growth_rate: tip.growth_rate.and_then(finite),
             status: tip.status,
+            reason: tip.reason.clone(),
             domain_radii: tip.radii.clone(),
         }
     }
@@ -207,6 +247,14 @@ pub fn results_schema() -> String {
     let mut schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<Results>();
     schema.insert("title".into(), "results.json of riss".into());
     serde_json::to_string_pretty(&schema).expect("a schema is plain values") + "\n"
+}
+
+fn sum_by_stage(times: &[(String, f64)]) -> BTreeMap<String, f64> {
+    let mut sums = BTreeMap::new();
+    for (stage, time) in times {
+        *sums.entry(stage.clone()).or_insert(0.0) += time;
+    }
+    sums
 }
 
 pub(super) fn finite(value: f64) -> Option<f64> {

@@ -1,6 +1,6 @@
 //! Crack paths: ends put on the boundary or recognized as tips, everything between them inside the body.
 
-use super::crossings::{Segment, first_contact, folds_back, meeting_parameters};
+use super::crossings::{Segment, first_contact, folds_back};
 use super::outline::vector;
 use super::report::Report;
 use crate::case::schema;
@@ -157,7 +157,7 @@ impl Builder<'_> {
         if self.domain.contains(p) {
             return true;
         }
-        let cuts = self.domain.edges.iter().flat_map(|e| meeting_parameters(p, q, e, self.tolerance()));
+        let cuts = self.domain.edges.iter().flat_map(|e| e.meetings(p, q, self.tolerance()));
         let first = cuts.fold(f64::INFINITY, f64::min);
         let mouth = p + (q - p) * first;
         let key = self.vertex_key(k);
@@ -183,7 +183,7 @@ impl Builder<'_> {
         let mut cuts = vec![];
         for (k, w) in self.vertices.windows(2).enumerate() {
             for (e, edge) in self.domain.edges.iter().enumerate() {
-                let at = meeting_parameters(w[0], w[1], edge, self.tolerance());
+                let at = edge.meetings(w[0], w[1], self.tolerance());
                 cuts.extend(at.into_iter().map(|s| (k, w[0] + (w[1] - w[0]) * s, e)));
             }
         }
@@ -232,19 +232,10 @@ impl Builder<'_> {
     }
 }
 
-/// The closest point of the boundary; exact on edges along an axis.
+/// The closest point of the boundary.
 fn snapped(domain: &Domain, p: Vector2) -> Vector2 {
-    let (edge, t) = domain.closest_edge(p);
-    // A distance that underflows is zero, too: axes are set below even then.
-    let mut q = if domain.distance_to_boundary(p) == 0.0 { p } else { domain.edges[edge].point(t) };
-    if let Curve::Line { start, end } = domain.edges[edge] {
-        for axis in 0..2 {
-            if start[axis] == end[axis] {
-                q[axis] = start[axis];
-            }
-        }
-    }
-    q
+    let (edge, _) = domain.closest_edge(p);
+    domain.on_edge(edge, p)
 }
 
 fn segments(vertices: &[Vector2], chain: usize) -> Vec<Segment> {

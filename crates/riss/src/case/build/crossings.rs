@@ -6,7 +6,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::curve::Curve;
 use crate::geometry::predicates::{distance_between_segments, distance_to_segment, segments_cross};
 use crate::geometry::tree::BoxTree;
-use crate::math::{Vector2, cross};
+use crate::math::Vector2;
 use crate::model::Domain;
 
 /// Arcs are flattened to this times the size of the body.
@@ -150,30 +150,4 @@ fn contains(boundary: &Boundary, l: usize, p: Vector2) -> bool {
     let edges: Vec<Curve> = boundary.loops[l].iter().map(|e| e.curve).collect();
     let loops = std::iter::once(0..edges.len()).collect();
     Domain { edges, loops, parts: vec![] }.contains(p)
-}
-
-/// Parameters along the segment `a b` at which it meets a curve, ends included, to within `tolerance`.
-pub(super) fn meeting_parameters(a: Vector2, b: Vector2, curve: &Curve, tolerance: f64) -> Vec<f64> {
-    let d = b - a;
-    let slack = tolerance / d.norm();
-    let candidates: Vec<f64> = match *curve {
-        Curve::Line { start, end } => {
-            let e = end - start;
-            let turn = cross(d, e);
-            if turn.abs() <= 1e-12 * d.norm() * e.norm() { vec![] } else { vec![cross(start - a, e) / turn] }
-        }
-        Curve::Arc { center, radius, .. } => {
-            let to_center = center - a;
-            let foot = to_center.dot(&d) / d.norm_squared();
-            let height = (to_center - d * foot).norm();
-            if height > radius + tolerance {
-                vec![]
-            } else {
-                let half = (radius * radius - height * height).max(0.0).sqrt() / d.norm();
-                vec![foot - half, foot + half]
-            }
-        }
-    };
-    let fits = |s: &f64| *s >= -slack && *s <= 1.0 + slack && curve.distance(a + d * *s) <= 2.0 * tolerance;
-    candidates.into_iter().filter(fits).collect()
 }

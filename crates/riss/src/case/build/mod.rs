@@ -4,6 +4,7 @@ mod boundary;
 mod cracks;
 mod crossings;
 mod exact;
+mod growth;
 mod loads;
 mod mesh;
 mod outline;
@@ -15,7 +16,7 @@ mod supports;
 use super::document::Document;
 use super::problem::Problem;
 use super::schema::{self, CaseFile, OutputSettings};
-use crate::analysis::Settings;
+use crate::analysis::{GrowthSettings, Settings};
 use crate::material::Elasticity;
 use crate::model::{Domain, Model, RigidMotion};
 use boundary::Boundary;
@@ -27,12 +28,11 @@ use std::path::Path;
 /// The name that stands for every outer edge.
 const OUTLINE: &str = "outline";
 
-/// Model, settings, output and notes; `None` or more problems if the case is not valid.
-pub(super) fn build(
-    document: &Document,
-    path: &Path,
-    problems: &mut Vec<Problem>,
-) -> Option<(Model, Settings, OutputSettings, Vec<Problem>)> {
+/// Model, settings, growth, output and notes.
+type Built = (Model, Settings, Option<GrowthSettings>, OutputSettings, Vec<Problem>);
+
+/// What a case means; `None` or more problems if it is not valid.
+pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
     let faulty = super::check::check(document, &super::json_schema(), problems);
     let file = deserialize(document, &faulty, problems)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -78,7 +78,10 @@ pub(super) fn build(
         springs: supports.springs,
         exact: setting.exact,
     };
-    Some((model, settings, file.output, report.notes))
+    if let Some(growth) = &file.growth {
+        growth::check(growth, &model, &mut report);
+    }
+    Some((model, settings, file.growth, file.output, report.notes))
 }
 
 /// Name of the file, or of its folder if the file is just called case.toml.

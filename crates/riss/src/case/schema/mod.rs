@@ -6,6 +6,7 @@ mod geometry;
 pub(in crate::case) use conditions::*;
 pub(in crate::case) use geometry::*;
 
+use crate::analysis::GrowthSettings;
 use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
@@ -91,6 +92,9 @@ pub(in crate::case) struct CaseFile {
     /// Fracture quantities.
     #[serde(default)]
     pub fracture: FractureSettings,
+    /// Crack growth; without it, the cracks stay as they are.
+    #[serde(default)]
+    pub growth: Option<GrowthSettings>,
     /// What is written.
     #[serde(default)]
     pub output: OutputSettings,

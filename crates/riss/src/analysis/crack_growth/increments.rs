@@ -1,0 +1,173 @@
+//! From the plan of a step to longer cracks: at once, or corrected until the new tips agree.
+
+use super::advance::{Increment, advance, arc_way};
+use super::plan::{LEAST_SCALE, StepPlan};
+use super::settings::{GrowthSettings, IncrementControl, IncrementForm};
+use super::state::{GrowthState, TipMemory};
+use super::walls::{Ending, length_of};
+use crate::analysis::linear_static::solve_step;
+use crate::analysis::{Observer, Settings, Stage, StaticResult};
+use crate::crack::{EndKind, TipId};
+use crate::error::Result;
+use crate::fracture::growth_criterion::{GrowthCriterion, TipDriving};
+use crate::model::Model;
+
+/// Corrections of an increment before it is taken as it is.
+const MAX_CORRECTIONS: usize = 4;
+/// A corrected increment is good if the criterion turns the new tip by less than this [rad].
+const GOOD_TURN: f64 = 2e-3;
+
+/// The model after an increment.
+pub(super) struct Grown {
+    pub model: Model,
+    /// What each tip of the plan ends at.
+    pub endings: Vec<Ending>,
+    /// Turn of each increment at the old tip [rad], and its length [length].
+    pub made: Vec<(f64, f64)>,
+    /// Memory of the tips.
+    pub memory: Vec<TipMemory>,
+    /// The solution after the increment, if corrections have found it already.
+    pub result: Option<Result<StaticResult>>,
+    /// Share of a whole increment that was taken.
+    pub scale: f64,
+}
+
+/// Direction and curvature of one increment while it is corrected.
+#[derive(Clone, Copy)]
+struct Shape {
+    angle: f64,
+    curvature: f64,
+    length: f64,
+}
+
+/// Makes the increments of a plan.
+pub(super) fn grow(
+    model: &Model,
+    settings: &Settings,
+    growth: &GrowthSettings,
+    plan: &StepPlan,
+    state: &GrowthState,
+    observer: &mut dyn Observer,
+) -> Grown {
+    let is_curved = growth.form == IncrementForm::Curved;
+    let mut shapes: Vec<Shape> = plan
+        .tips
+        .iter()
+        .map(|t| {
+            let curvature = if is_curved { state.memory(t.tip).curvature } else { 0.0 };
+            Shape { angle: t.angle, curvature, length: t.length }
+        })
+        .collect();
+    let mut grown = make(model, plan, &shapes, state.scale);
+    let corrects = is_curved || growth.criterion == GrowthCriterion::LocalSymmetry;
+    let tolerance = match growth.control {
+        IncrementControl::Converged { tolerance } => Some(tolerance),
+        IncrementControl::Fixed | IncrementControl::HalvedOnTurns { .. } => None,
+    };
+    if !corrects && tolerance.is_none() {
+        return grown;
+    }
+    let mut corrections = 0;
+    loop {
+        let result = solve_step(&grown.model, settings, state.step + 1, &mut Trial { observer });
+        let Ok(found) = &result else {
+            grown.result = Some(result);
+            return grown;
+        };
+        let turns = turns_at_new_tips(&grown, growth, plan, found);
+        let turn = turns.iter().flatten().fold(0.0, |m: f64, t| m.max(t.abs()));
+        if corrects && turn > GOOD_TURN && corrections < MAX_CORRECTIONS {
+            corrections += 1;
+            for (shape, turn) in shapes.iter_mut().zip(&turns) {
+                match (turn, is_curved) {
+                    (Some(turn), true) => shape.curvature += turn / shape.length,
+                    (Some(turn), false) => shape.angle += turn,
+                    (None, _) => {}
+                }
+            }
+        } else if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) > t) && grown.scale > LEAST_SCALE {
+            shapes.iter_mut().for_each(|s| s.length *= 0.5);
+            grown.scale *= 0.5;
+            corrections = 0;
+        } else {
+            grown.result = Some(result);
+            return grown;
+        }
+        let scale = grown.scale;
+        grown = make(model, plan, &shapes, scale);
+    }
+}
+
+/// Distance between the ends of one increment and of two of half the length, over the length.
+///
+/// Two straight halves end half a turn times half a length away; on arcs the curvature is what differs.
+fn path_error(shapes: &[Shape], turns: &[Option<f64>], is_curved: bool) -> f64 {
+    let error = |(shape, turn): (&Shape, &Option<f64>)| {
+        let turn = turn.unwrap_or(0.0).abs();
+        if is_curved { turn / 8.0 + shape.curvature.abs().powi(2) * shape.length.powi(2) / 48.0 } else { 0.25 * turn }
+    };
+    shapes.iter().zip(turns).map(error).fold(0.0, f64::max)
+}
+
+fn make(model: &Model, plan: &StepPlan, shapes: &[Shape], scale: f64) -> Grown {
+    let increments: Vec<Increment> = plan
+        .tips
+        .iter()
+        .zip(shapes)
+        .map(|(t, s)| {
+            let frame = model.cracks[t.tip.crack].frame(t.tip.end);
+            Increment { tip: t.tip, way: arc_way(frame.position, frame.angle + s.angle, s.curvature, s.length) }
+        })
+        .collect();
+    let before: Vec<f64> = increments.iter().map(|i| model.cracks[i.tip.crack].length()).collect();
+    let mut model = model.clone();
+    let endings = advance(&mut model, &increments);
+    let after = |k: usize| model.cracks[increments[k].tip.crack].length();
+    // Both ends of one crack may have grown.
+    let others = |k: usize| -> f64 {
+        let same = |j: &usize| *j != k && increments[*j].tip.crack == increments[k].tip.crack;
+        (0..increments.len()).filter(same).map(|j| length_of(&increments[j].way)).sum()
+    };
+    let made = (0..increments.len()).map(|k| (shapes[k].angle, (after(k) - before[k] - others(k)).max(0.0))).collect();
+    let mut memory: Vec<TipMemory> = plan
+        .tips
+        .iter()
+        .zip(shapes)
+        .map(|(t, s)| TipMemory { tip: t.tip, curvature: s.curvature, pending: 0.0 })
+        .collect();
+    memory.extend(plan.pending.iter().map(|&(tip, pending)| TipMemory { tip, curvature: 0.0, pending }));
+    memory.sort_by_key(|m| m.tip);
+    Grown { model, endings, made, memory, result: None, scale }
+}
+
+/// Turn that the criterion asks for at each new tip that is still one [rad].
+fn turns_at_new_tips(
+    grown: &Grown,
+    growth: &GrowthSettings,
+    plan: &StepPlan,
+    found: &StaticResult,
+) -> Vec<Option<f64>> {
+    let turn = |tip: TipId| {
+        let record = found.step.cracks[tip.crack].tips.iter().find(|t| t.end == tip.end)?;
+        let (k1, k2) = (record.k1?, record.k2?);
+        let driving = TipDriving { k1, k2, t_stress: record.t_stress.unwrap_or(0.0) };
+        (k1 > 0.0).then(|| growth.criterion.kink_angle(&driving, &grown.model.material))
+    };
+    let is_tip = |tip: TipId| grown.model.cracks[tip.crack].end_kind(tip.end) == EndKind::Tip;
+    plan.tips.iter().map(|t| if is_tip(t.tip) { turn(t.tip) } else { None }).collect()
+}
+
+/// Passes on stages; warnings of a solution that may be dropped are heard when it is taken.
+struct Trial<'a> {
+    observer: &'a mut dyn Observer,
+}
+
+impl Observer for Trial<'_> {
+    fn stage(&mut self, stage: Stage) {
+        self.observer.stage(stage);
+    }
+
+    fn wants_fields(&self, step: usize) -> bool {
+        self.observer.wants_fields(step)
+    }
+}

@@ -1,0 +1,70 @@
+//! What a step needs to know of the steps before it: enough to go on from there.
+
+use crate::crack::{CrackPath, TipId};
+use crate::math::Vector2;
+use crate::model::Model;
+use serde::{Deserialize, Serialize};
+
+/// Where crack growth stands at the beginning of a step. The same state gives the same steps, bit by bit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GrowthState {
+    /// Number of the step.
+    pub step: usize,
+    /// Cracks in this step.
+    pub cracks: Vec<CrackPath>,
+    /// Load cycles up to the step before.
+    pub cycles: f64,
+    /// The increment from the step before, which the cycles are still to be counted of.
+    pub leader: Option<Leader>,
+    /// Factor on the loads in the step before.
+    pub load_factor: Option<f64>,
+    /// Share of the increment that the increment control has left.
+    pub scale: f64,
+    /// What tips carry from step to step.
+    pub tips: Vec<TipMemory>,
+    /// Loops of the domain that cracks have reached and that may start new ones, in order.
+    pub reached_loops: Vec<usize>,
+}
+
+/// The tip that set the pace of an increment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Leader {
+    /// The tip.
+    pub tip: TipId,
+    /// Length of its crack as in handbooks, before and after the increment [length].
+    pub lengths: [f64; 2],
+    /// Equivalent factor before the increment [stress·√length].
+    pub k_equivalent: f64,
+}
+
+/// What a tip carries from step to step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TipMemory {
+    /// The tip.
+    pub tip: TipId,
+    /// Curvature of its last increment, positive to the left [1/length].
+    pub curvature: f64,
+    /// Growth that was too short to be made yet [length].
+    pub pending: f64,
+}
+
+impl GrowthState {
+    /// The state of the first step.
+    pub fn first(model: &Model) -> Self {
+        Self { cracks: model.cracks.clone(), scale: 1.0, ..Self::default() }
+    }
+
+    /// Memory of a tip; nothing for a new one.
+    pub fn memory(&self, tip: TipId) -> TipMemory {
+        let known = self.tips.iter().find(|m| m.tip == tip).copied();
+        known.unwrap_or(TipMemory { tip, curvature: 0.0, pending: 0.0 })
+    }
+
+    /// All positions, for messages and tests.
+    pub fn tip_positions(&self) -> Vec<Vector2> {
+        self.cracks.iter().flat_map(|c| c.tip_ends().map(|e| c.end_position(e))).collect()
+    }
+}

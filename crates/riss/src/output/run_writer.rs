@@ -1,0 +1,176 @@
+//! Writes a run step by step: after each step the folder is complete, whatever happens next.
+
+use super::fields::{STEP_FILE_KINDS, step_file_name, step_files};
+use super::history::history_csv;
+use super::results::{Results, StepResults};
+use super::vtk::collection;
+use super::whole_file::write_whole;
+use super::{FieldQuantity, OutputOptions, PICTURE_FILE, RESULTS_FILE, RunInfo, field_picture};
+use crate::analysis::{GrowthState, StaticResult};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Folder of the states from which growth can go on, one file a step.
+pub const RESTART_FOLDER: &str = "restart";
+
+/// The folder of a run.
+#[derive(Clone, Debug)]
+pub struct RunWriter {
+    dir: PathBuf,
+    options: OutputOptions,
+    steps: Vec<StepResults>,
+    /// Kind and step of the files that are there, in order.
+    step_files: Vec<(&'static str, usize)>,
+}
+
+impl RunWriter {
+    /// Starts anew in `dir`, which is made if needed; results of an earlier run are removed.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(dir: &Path, options: OutputOptions) -> io::Result<Self> {
+        fs::create_dir_all(dir)?;
+        remove_if_there(&dir.join(RESULTS_FILE))?;
+        remove_steps_from(dir, 0)?;
+        Ok(Self { dir: dir.into(), options, steps: vec![], step_files: vec![] })
+    }
+
+    /// Goes on in the folder of an earlier run: its steps before `first` stay, the others are removed.
+    ///
+    /// # Errors
+    /// What the system says; `InvalidData` if the results there are no results or lack one of those steps.
+    pub fn resume(dir: &Path, options: OutputOptions, first: usize) -> io::Result<Self> {
+        let mut steps = read_results(dir)?.steps;
+        steps.retain(|s| s.step < first);
+        if steps.iter().map(|s| s.step).ne(0..first) {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                format!("there are no results of all steps before {first}"),
+            ));
+        }
+        remove_steps_from(dir, first)?;
+        let there = |kind: &'static str| {
+            (0..first).filter(move |k| dir.join(step_file_name(kind, *k)).is_file()).map(move |k| (kind, k))
+        };
+        let step_files = STEP_FILE_KINDS.into_iter().flat_map(there).collect();
+        Ok(Self { dir: dir.into(), options, steps, step_files })
+    }
+
+    /// Writes the files of a step and brings those of the run up to date; returns the paths, `results.json` last.
+    ///
+    /// - `info`: of the run so far; its stage times are those of all steps together
+    /// - `stage_time_s`: of this step
+    /// - `state`: from which the step can be repeated
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_step(
+        &mut self,
+        info: &RunInfo,
+        result: &StaticResult,
+        stage_time_s: &[(String, f64)],
+        state: Option<&GrowthState>,
+    ) -> io::Result<Vec<PathBuf>> {
+        self.steps.push(StepResults::new(result, stage_time_s));
+        let step = result.step.step;
+        let mut files: Vec<(String, Vec<u8>)> = vec![("history.csv".into(), history_csv(&self.steps)?)];
+        for file in step_files(result, &self.options)? {
+            self.step_files.push((file.kind, step));
+            files.push((file.name, file.content));
+        }
+        files.extend(self.collections());
+        if self.options.fields && !result.fields.positions.is_empty() {
+            let picture = field_picture::field_picture(result, FieldQuantity::VonMises)?;
+            files.push((PICTURE_FILE.into(), picture.into_bytes()));
+        }
+        if let Some(state) = state {
+            fs::create_dir_all(self.dir.join(RESTART_FOLDER))?;
+            files.push((restart_name(step), serde_json::to_vec(state)?));
+        }
+        let mut results = Results::of_steps(info, result, self.steps.clone());
+        results.files = files.iter().map(|f| f.0.clone()).collect();
+        for (kind, step) in &self.step_files {
+            let name = step_file_name(kind, *step);
+            if !results.files.contains(&name) {
+                results.files.push(name);
+            }
+        }
+        files.push((RESULTS_FILE.into(), results.to_json().into_bytes()));
+        files
+            .into_iter()
+            .map(|(name, content)| {
+                let path = self.dir.join(name);
+                write_whole(&path, &content)?;
+                Ok(path)
+            })
+            .collect()
+    }
+
+    /// One collection for each kind of file, over all steps.
+    fn collections(&self) -> Vec<(String, Vec<u8>)> {
+        let of_kind = |kind: &&'static str| {
+            let files: Vec<(usize, String)> =
+                self.step_files.iter().filter(|f| f.0 == *kind).map(|f| (f.1, step_file_name(kind, f.1))).collect();
+            (!files.is_empty()).then(|| (format!("{kind}.pvd"), collection(&files)))
+        };
+        STEP_FILE_KINDS.iter().filter_map(of_kind).collect()
+    }
+}
+
+/// Writes a file of a run whole or not at all; folders in its name are made.
+///
+/// # Errors
+/// What the system says.
+pub fn write_file(dir: &Path, name: &str, content: &[u8]) -> io::Result<()> {
+    let path = dir.join(name);
+    fs::create_dir_all(path.parent().unwrap_or(dir))?;
+    write_whole(&path, content)
+}
+
+/// The state from which a step can be repeated.
+///
+/// # Errors
+/// What the system says; `InvalidData` if the file is none of ours.
+pub fn restart_state(dir: &Path, step: usize) -> io::Result<GrowthState> {
+    Ok(serde_json::from_slice(&fs::read(dir.join(restart_name(step)))?)?)
+}
+
+/// The results in a folder.
+///
+/// # Errors
+/// What the system says; `InvalidData` if the file is none of ours.
+pub fn read_results(dir: &Path) -> io::Result<Results> {
+    Ok(serde_json::from_slice(&fs::read(dir.join(RESULTS_FILE))?)?)
+}
+
+fn restart_name(step: usize) -> String {
+    format!("{RESTART_FOLDER}/step_{step:04}.json")
+}
+
+fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}
+
+/// Removes the files of steps from `first` on, so that none of an earlier run passes for one of this.
+fn remove_steps_from(dir: &Path, first: usize) -> io::Result<()> {
+    let is_old = |name: &str| {
+        let (kind, rest) = name.rsplit_once('_')?;
+        let step: usize = rest.split_once('.')?.0.parse().ok()?;
+        let ours = STEP_FILE_KINDS.contains(&kind) && name == step_file_name(kind, step);
+        ((ours || kind == "step") && step >= first).then_some(())
+    };
+    for folder in [dir.to_path_buf(), dir.join(RESTART_FOLDER)] {
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        for entry in entries {
+            let entry = entry?;
+            if is_old(&entry.file_name().to_string_lossy()).is_some() {
+                remove_if_there(&entry.path())?;
+            }
+        }
+    }
+    Ok(())
+}
