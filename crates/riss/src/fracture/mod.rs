@@ -1,9 +1,9 @@
 //! Fracture quantities at crack tips. Moves no crack.
 //!
-//! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] evaluates them.
+//! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] evaluates them; [`fatigue`]
+//! turns stress intensity factors into growth per load cycle.
 
 pub mod fatigue;
-pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;

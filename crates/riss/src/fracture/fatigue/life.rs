@@ -34,7 +34,8 @@ pub struct Increment {
 pub struct LifeOverIncrement {
     /// Load cycles from the start to the ending; infinite if the crack only creeps towards its threshold.
     pub cycles: f64,
-    /// Estimate of the numerical error of `cycles`, on the safe side [cycles].
+    /// Estimate of the numerical error of `cycles` [cycles]; it does not see the small jumps that are left out where more
+    /// than 200 cycles of a spectrum pass their thresholds within one increment.
     pub error: f64,
     /// How it ends.
     pub ending: Ending,

@@ -155,7 +155,7 @@ fn nasgro_arrests_after_the_closed_form() {
     assert!(matches!(life.ending, Ending::Arrests { .. }));
 }
 
-/// K = 20/a and a rate C K^3 that breaks off at K = 12: N = (12^−4 − 20^−4) 20/(4 C) 20^0 from ∫ a³ da.
+/// K = 20/a and a rate C K³ that breaks off at K = 12, a = 5/3: N = ∫ a³ da / (C 20³).
 #[test]
 fn paris_arrests_at_its_threshold() {
     let increment = Increment { a_start: 1.0, a_end: 2.0, k_start: 20.0, k_end: 10.0 };
