@@ -4,6 +4,7 @@
 //! turns stress intensity factors into growth per load cycle.
 
 pub mod fatigue;
+pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;

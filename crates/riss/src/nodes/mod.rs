@@ -8,6 +8,7 @@ mod budget;
 pub mod chains;
 pub mod fill;
 pub mod generation;
+mod ligaments;
 pub mod settings;
 pub mod spacing;
 pub mod support;

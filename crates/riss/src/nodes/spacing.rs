@@ -1,6 +1,7 @@
 //! How far apart nodes shall stand: smallest at tips, holes and thin ligaments, growing linearly away from them.
 
 use super::Nodes;
+use super::ligaments;
 use super::settings::Graded;
 use super::support::neighbor_distances;
 use crate::crack::EndKind;
@@ -96,6 +97,7 @@ impl SpacingField {
         field.add_edges(model);
         field.add_changes(model);
         field.add_thickness(model);
+        ligaments::add(&mut field, model);
         for p in model.point_loads.iter().map(|l| l.at).chain(model.point_supports.iter().map(|s| s.at)) {
             field.add(Place::Point(p), SINGULAR_FRACTION * largest);
         }
@@ -124,6 +126,11 @@ impl SpacingField {
     /// Greatest slope of the spacing.
     pub fn growth(&self) -> f64 {
         self.growth
+    }
+
+    /// Asks for a spacing at a point.
+    pub(super) fn add_point(&mut self, p: Vector2, spacing: f64) {
+        self.add(Place::Point(p), spacing);
     }
 
     fn add(&mut self, place: Place, spacing: f64) {

@@ -38,11 +38,18 @@ pub fn pieces(matrix: &BlockMatrix) -> Vec<u32> {
     (0..n as u32).map(|i| find(&mut root, i)).collect()
 }
 
-/// Checks that supports and springs hold every piece of the body.
+/// Load on a piece below this fraction of the largest nodal load is none.
+const UNLOADED: f64 = 1e-9;
+
+/// Checks that supports and springs hold every piece of the body. Returns the nodes of pieces that cracks have cut out
+/// and that nothing holds or loads: they stay where they are.
 ///
 /// # Errors
 /// [`Error::FreeRigidMotion`] names the motion and the piece.
-pub fn check_held(model: &Model, discrete: &Discretization, matrix: &BlockMatrix) -> Result<()> {
+pub fn check_held(model: &Model, discrete: &Discretization, matrix: &BlockMatrix, load: &[f64]) -> Result<Vec<usize>> {
+    let mut loose = vec![];
+    let force = |i: usize| Vector2::new(load[2 * i], load[2 * i + 1]).norm();
+    let largest = (0..matrix.n_nodes()).map(force).fold(0.0, f64::max);
     let piece_of = pieces(matrix);
     let mut leaders: Vec<u32> = piece_of.clone();
     leaders.sort_unstable();
@@ -50,6 +57,7 @@ pub fn check_held(model: &Model, discrete: &Discretization, matrix: &BlockMatrix
     let several = leaders.len() > 1;
     let positions = &discrete.approximation.nodes().positions;
     let rows = support_rows(model, discrete)?;
+    let main = largest_piece(&piece_of);
     for leader in leaders {
         let members: Vec<Vector2> =
             positions.iter().zip(&piece_of).filter(|(_, p)| **p == leader).map(|(x, _)| *x).collect();
@@ -57,7 +65,7 @@ pub fn check_held(model: &Model, discrete: &Discretization, matrix: &BlockMatrix
         let size = members.iter().map(|x| (x - center).norm()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let mut held = Matrix3::zeros();
         if model.rigid_motion == RigidMotion::MeanIsZero {
-            if !several {
+            if leader == main {
                 continue;
             }
         } else {
@@ -71,12 +79,25 @@ pub fn check_held(model: &Model, discrete: &Discretization, matrix: &BlockMatrix
         let eigen = held.symmetric_eigen();
         let (index, least) = eigen.eigenvalues.argmin();
         if !(least > FREE * eigen.eigenvalues.max()) {
+            let of_piece = || (0..piece_of.len()).filter(|i| piece_of[*i] == leader);
+            if several && held == Matrix3::zeros() && of_piece().all(|i| force(i) <= UNLOADED * largest) {
+                loose.extend(of_piece());
+                continue;
+            }
             let motion =
                 describe(eigen.eigenvectors.column(index).into_owned(), center, size, held == Matrix3::zeros());
             return Err(Error::FreeRigidMotion { motion, component: several.then_some(center) });
         }
     }
-    Ok(())
+    Ok(loose)
+}
+
+/// The piece with most nodes, the first of equals.
+fn largest_piece(piece_of: &[u32]) -> u32 {
+    let mut counts = vec![0u32; piece_of.len()];
+    piece_of.iter().for_each(|p| counts[*p as usize] += 1);
+    let most = counts.iter().copied().max().unwrap_or(0);
+    counts.iter().position(|c| *c == most).unwrap_or(0) as u32
 }
 
 fn describe(motion: Vector3<f64>, center: Vector2, size: f64, nothing_held: bool) -> String {

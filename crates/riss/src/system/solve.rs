@@ -47,7 +47,12 @@ pub fn solve(
     method: &ConstraintMethod,
     solver: LinearSolver,
 ) -> Result<Solution> {
-    check_held(model, discrete, &system.matrix)?;
+    let loose = check_held(model, discrete, &system.matrix, &system.load)?;
+    let stiffness = system.matrix.largest_diagonal();
+    for &node in &loose {
+        system.matrix.add_diagonal(2 * node, stiffness);
+        system.matrix.add_diagonal(2 * node + 1, stiffness);
+    }
     let positions = &discrete.approximation.nodes().positions;
     let order = nested_dissection(positions, &system.matrix);
     let mean = match model.rigid_motion {
@@ -57,7 +62,7 @@ pub fn solve(
     let mut result = Solution { n_unknowns: system.load.len(), ..Solution::default() };
     if let Some(mean) = &mean {
         (result.balancing_force, result.imbalance) = mean.balance(positions, &mut system.load);
-        pin(&mut system.matrix, positions);
+        pin(&mut system.matrix, positions, &loose);
     }
     let points = point_rows(model, discrete)?;
     let rows = match method {
@@ -87,11 +92,13 @@ pub fn solve(
     Ok(result)
 }
 
-/// Holds three dofs so that the matrix is definite; balanced loads put no force on them.
-fn pin(matrix: &mut BlockMatrix, positions: &[Vector2]) {
+/// Holds three dofs so that the matrix is definite; balanced loads put no force on them. None is that of a `loose` node.
+fn pin(matrix: &mut BlockMatrix, positions: &[Vector2], loose: &[usize]) {
     let stiffness = matrix.largest_diagonal();
-    let first = 0;
-    let far = (0..positions.len())
+    let is_loose: std::collections::BTreeSet<usize> = loose.iter().copied().collect();
+    let nodes = || (0..positions.len()).filter(|i| !is_loose.contains(i));
+    let first = nodes().next().expect("the largest piece is not loose");
+    let far = nodes()
         .max_by(|&a, &b| (positions[a] - positions[first]).norm().total_cmp(&(positions[b] - positions[first]).norm()))
         .expect("there are nodes");
     let along = positions[far] - positions[first];

@@ -1,0 +1,64 @@
+//! Material between a crack and what it runs beside: the boundary, a hole, another crack.
+
+use super::spacing::SpacingField;
+use crate::crack::{CrackPath, EndKind};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::predicates::distance_to_segment;
+use crate::geometry::tree::BoxTree;
+use crate::math::Vector2;
+use crate::model::Model;
+
+/// Spacing as a fraction of the ligament.
+const FRACTION: f64 = 1.0 / 4.0;
+/// A wall that a crack starts from lies beside it if their angle has a smaller sine.
+const BESIDE: f64 = 0.3;
+/// Steps along a path are at least this part of its length.
+const LEAST_STEP: f64 = 1e-3;
+
+/// Asks for nodes across every ligament beside a crack that the field does not resolve yet.
+pub(super) fn add(field: &mut SpacingField, model: &Model) {
+    let segments: Vec<(usize, [Vector2; 2])> =
+        model.cracks.iter().enumerate().flat_map(|(k, c)| c.segments().map(move |(a, b)| (k, [a, b]))).collect();
+    let tree = BoxTree::new(&segments.iter().map(|s| Aabb::of_points(s.1)).collect::<Vec<_>>());
+    for (index, crack) in model.cracks.iter().enumerate() {
+        let mut wanted = vec![];
+        walk(crack, |p, from_wall| {
+            let mut distance = model.domain.distance_to_boundary(p);
+            // The way to the next point is as long as the ligament, so none is passed over.
+            tree.visit(&Aabb::around(p, Vector2::repeat(distance)), |i| {
+                let (other, [a, b]) = segments[i as usize];
+                if other != index {
+                    distance = distance.min(distance_to_segment(p, a, b));
+                }
+            });
+            if distance < BESIDE * from_wall {
+                wanted.push((p, FRACTION * distance));
+            }
+            distance
+        });
+        for (p, spacing) in wanted {
+            if spacing > 0.0 && field.at(p) > spacing {
+                field.add_point(p, spacing);
+            }
+        }
+    }
+}
+
+/// Visits points along a path with their distance along it from the nearest end that stands on a wall; `visit`
+/// returns how far the next one may be.
+fn walk(crack: &CrackPath, mut visit: impl FnMut(Vector2, f64) -> f64) {
+    let length = crack.length();
+    let on_wall = crack.ends.map(|e| e != EndKind::Tip);
+    let mut before = 0.0;
+    let mut next = 0.0;
+    for (a, b) in crack.segments() {
+        let along = (b - a).norm();
+        while next <= before + along {
+            let from_start = if on_wall[0] { next } else { f64::INFINITY };
+            let from_end = if on_wall[1] { length - next } else { f64::INFINITY };
+            let p = a + (b - a) * ((next - before) / along);
+            next += visit(p, from_start.min(from_end)).max(LEAST_STEP * length);
+        }
+        before += along;
+    }
+}
