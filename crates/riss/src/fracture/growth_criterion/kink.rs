@@ -157,7 +157,7 @@ mod tests {
         }
     }
 
-    /// To first order the factors are the singular stresses ahead of the crack [Cotterell1980, Eqs. 25, 26].
+    /// To first order the factors are the singular stresses ahead of the crack [Cotterell1980].
     #[test]
     fn small_kinks_see_the_stress_of_the_crack() {
         let angle = 1e-5_f64;

@@ -88,6 +88,7 @@ mod tests {
     use super::*;
     use crate::material::PlaneState;
     use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
 
     const MATERIAL: Elasticity = Elasticity { young: 1.0, poisson: 0.3, plane: PlaneState::Strain };
     const ALL: [GrowthCriterion; 6] = [
@@ -103,7 +104,7 @@ mod tests {
         criterion.kink_angle(&TipDriving { k1, k2, t_stress }, &MATERIAL)
     }
 
-    /// All criteria agree with local symmetry to first order, `θ = -2 K_II / K_I` [Cotterell1980, Eq. 33].
+    /// All criteria agree with local symmetry to first order, `θ = -2 K_II / K_I` [Cotterell1980].
     #[test]
     fn small_angles_are_twice_the_ratio_of_the_factors() {
         for criterion in ALL {
@@ -128,13 +129,12 @@ mod tests {
     #[test]
     fn extreme_numbers_give_finite_angles() {
         let numbers = [0.0, 5e-324, 1e-310, 1e-160, 1e-9, 1.0, 1e9, 1e160, f64::MAX];
+        let sides = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
         for criterion in ALL {
-            for (k1, k2, t) in numbers
-                .iter()
-                .flat_map(|k1| numbers.iter().flat_map(move |k2| numbers.iter().map(move |t| (*k1, *k2, *t))))
-            {
-                for (k1, t) in [(k1, t), (-k1, t), (k1, -t), (-k1, -t)] {
-                    let found = angle(criterion, k1, k2, t);
+            for i in 0..numbers.len().pow(3) {
+                let [k1, k2, t] = [1, 9, 81].map(|stride| numbers[i / stride % numbers.len()]);
+                for (a, b) in sides {
+                    let found = angle(criterion, a * k1, k2, b * t);
                     assert!((-std::f64::consts::PI..=0.0).contains(&found), "{criterion:?} {k1} {k2} {t}: {found}");
                 }
             }
@@ -151,7 +151,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
         fn angles_are_odd_in_mode_two_and_free_of_units(k1 in -5.0..5.0, k2 in 1e-6..5.0, t in -5.0..5.0) {
