@@ -37,7 +37,7 @@ pub(super) fn solve_step(
     step: usize,
     observer: &mut dyn Observer,
 ) -> Result<StaticResult> {
-    let mut warnings = Warnings { observer, list: vec![] };
+    let mut warnings = Warnings::new(observer);
     let discrete = discretize(model, settings, warnings.observer)?;
     let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
     if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
@@ -88,21 +88,8 @@ pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observe
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
 
-struct Warnings<'a> {
-    observer: &'a mut dyn Observer,
-    list: Vec<Warning>,
-}
-
-impl Warnings<'_> {
-    fn add(&mut self, message: String) {
-        let warning = Warning { message };
-        self.observer.warning(&warning);
-        self.list.push(warning);
-    }
-}
-
 /// Assembles and solves; a matrix that Nitsche's terms made indefinite is tried again with a larger stabilization.
-fn solve_once(
+pub(super) fn solve_once(
     model: &Model,
     settings: &Settings,
     discrete: &Discretization,

@@ -67,6 +67,24 @@ pub struct Warning {
     pub message: String,
 }
 
+/// Tells the observer of warnings and keeps them.
+pub(super) struct Warnings<'a> {
+    pub observer: &'a mut dyn Observer,
+    pub list: Vec<Warning>,
+}
+
+impl<'a> Warnings<'a> {
+    pub fn new(observer: &'a mut dyn Observer) -> Self {
+        Self { observer, list: vec![] }
+    }
+
+    pub fn add(&mut self, message: String) {
+        let warning = Warning { message };
+        self.observer.warning(&warning);
+        self.list.push(warning);
+    }
+}
+
 /// One step; a static analysis has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepRecord {

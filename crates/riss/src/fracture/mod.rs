@@ -1,8 +1,9 @@
 //! Fracture quantities at crack tips. Moves no crack.
 //!
 //! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] evaluates them; [`growth_criterion`] tells which
-//! way the tip would grow.
+//! way the tip would grow, [`fatigue`] how far in a load cycle.
 
+pub mod fatigue;
 pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod settings;

@@ -6,6 +6,7 @@
 mod advance;
 mod increments;
 mod plan;
+mod seeding;
 pub mod settings;
 pub mod state;
 mod walls;
@@ -17,6 +18,7 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use increments::{Grown, grow};
 use plan::{StepPlan, leader, plan_step, record_mut};
+use seeding::{seed, starts_again};
 pub use settings::GrowthSettings;
 pub use state::GrowthState;
 use walls::Ending;
@@ -41,7 +43,15 @@ pub fn crack_growth(
     observer: &mut dyn Observer,
 ) -> Result<Option<GrowthEnd>> {
     let mut model = model.clone();
-    let mut state = start.unwrap_or_else(|| GrowthState::first(&model));
+    let mut state = match start {
+        Some(state) => state,
+        None => {
+            if let Some(seeding) = &growth.seeding {
+                seed(&mut model, settings, seeding, None, observer)?;
+            }
+            GrowthState::first(&model)
+        }
+    };
     model.cracks = state.cracks.clone();
     let increment = growth.increment.unwrap_or_else(|| automatic_increment(&model));
     let mut result = solve_step(&model, settings, state.step, observer)?;
@@ -60,7 +70,17 @@ pub fn crack_growth(
         }
         state = next_state(&model, &plan, &grown, &state, result.step.load_factor);
         model = grown.model;
-        let found = match grown.result {
+        let mut solved = grown.result;
+        // The outline is no hole.
+        let holes: Vec<usize> = state.reached_loops.iter().copied().filter(|l| *l > 0).collect();
+        if let Some(seeding) = starts_again(growth.seeding.as_ref()).filter(|_| !holes.is_empty()) {
+            // A body in pieces starts no cracks; the solution below says so.
+            if let Ok(1..) = seed(&mut model, settings, seeding, Some(&holes), observer) {
+                state.cracks = model.cracks.clone();
+                solved = None;
+            }
+        }
+        let found = match solved {
             Some(Ok(found)) => {
                 found.warnings.iter().for_each(|w| observer.warning(w));
                 Ok(found)

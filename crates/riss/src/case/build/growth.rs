@@ -3,7 +3,6 @@
 use super::report::Report;
 use crate::analysis::GrowthSettings;
 use crate::analysis::crack_growth::settings::{AdvanceLaw, IncrementControl, QuasiStatic, Seeding, SeedingTime};
-use crate::fracture::GrowthCriterion;
 use crate::fracture::fatigue::FieldProblem;
 use crate::model::Model;
 
@@ -18,10 +17,6 @@ pub(super) fn check(growth: &GrowthSettings, model: &Model, report: &mut Report)
             let names = model.cracks.iter().map(|c| c.name.as_str());
             report.error(format!("growth.held[{k}]"), "unknown crack").one_of(name, names);
         }
-    }
-    if let GrowthCriterion::MaximumCircumferentialStressWithTStress { critical_distance } = growth.criterion {
-        let key = "growth.criterion.maximum-circumferential-stress-with-t-stress.critical_distance";
-        report.positive(key, critical_distance);
     }
     match growth.control {
         IncrementControl::Fixed => {}
