@@ -1,7 +1,7 @@
 //! Material between a crack and what it runs beside: the boundary, a hole, another crack.
 
 use super::spacing::SpacingField;
-use crate::crack::{CrackPath, EndKind};
+use crate::crack::{CrackPath, End, EndKind};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::predicates::distance_to_segment;
 use crate::geometry::tree::BoxTree;
@@ -10,7 +10,7 @@ use crate::model::Model;
 
 /// Spacing as a fraction of the ligament.
 const FRACTION: f64 = 1.0 / 4.0;
-/// A wall that a crack starts from lies beside it if their angle has a smaller sine.
+/// A wall that a crack touches lies beside it if their angle has a smaller sine.
 const BESIDE: f64 = 0.3;
 /// Steps along a path are at least this part of its length.
 const LEAST_STEP: f64 = 1e-3;
@@ -20,9 +20,11 @@ pub(super) fn add(field: &mut SpacingField, model: &Model) {
     let segments: Vec<(usize, [Vector2; 2])> =
         model.cracks.iter().enumerate().flat_map(|(k, c)| c.segments().map(move |(a, b)| (k, [a, b]))).collect();
     let tree = BoxTree::new(&segments.iter().map(|s| Aabb::of_points(s.1)).collect::<Vec<_>>());
+    // Where cracks start from a wall or end at one: no ligament gets thinner than the distance from there allows.
+    let contacts: Vec<Vector2> = model.cracks.iter().flat_map(contacts).collect();
     for (index, crack) in model.cracks.iter().enumerate() {
         let mut wanted = vec![];
-        walk(crack, |p, from_wall| {
+        walk(crack, |p| {
             let mut distance = model.domain.distance_to_boundary(p);
             // The way to the next point is as long as the ligament, so none is passed over.
             tree.visit(&Aabb::around(p, Vector2::repeat(distance)), |i| {
@@ -31,7 +33,8 @@ pub(super) fn add(field: &mut SpacingField, model: &Model) {
                     distance = distance.min(distance_to_segment(p, a, b));
                 }
             });
-            if distance < BESIDE * from_wall {
+            let from_contact = contacts.iter().map(|c| (c - p).norm()).fold(f64::INFINITY, f64::min);
+            if distance < BESIDE * from_contact {
                 wanted.push((p, FRACTION * distance));
             }
             distance
@@ -44,20 +47,20 @@ pub(super) fn add(field: &mut SpacingField, model: &Model) {
     }
 }
 
-/// Visits points along a path with their distance along it from the nearest end that stands on a wall; `visit`
-/// returns how far the next one may be.
-fn walk(crack: &CrackPath, mut visit: impl FnMut(Vector2, f64) -> f64) {
-    let length = crack.length();
-    let on_wall = crack.ends.map(|e| e != EndKind::Tip);
+fn contacts(crack: &CrackPath) -> impl Iterator<Item = Vector2> + '_ {
+    let is_contact = |e: &End| crack.end_kind(*e) != EndKind::Tip;
+    [End::Start, End::End].into_iter().filter(is_contact).map(|e| crack.end_position(e))
+}
+
+/// Visits points along a path; `visit` returns how far the next one may be.
+fn walk(crack: &CrackPath, mut visit: impl FnMut(Vector2) -> f64) {
+    let least = LEAST_STEP * crack.length();
     let mut before = 0.0;
     let mut next = 0.0;
     for (a, b) in crack.segments() {
         let along = (b - a).norm();
         while next <= before + along {
-            let from_start = if on_wall[0] { next } else { f64::INFINITY };
-            let from_end = if on_wall[1] { length - next } else { f64::INFINITY };
-            let p = a + (b - a) * ((next - before) / along);
-            next += visit(p, from_start.min(from_end)).max(LEAST_STEP * length);
+            next += visit(a + (b - a) * ((next - before) / along)).max(least);
         }
         before += along;
     }
