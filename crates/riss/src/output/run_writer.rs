@@ -90,11 +90,13 @@ impl RunWriter {
         }
         let mut results = Results::of_steps(info, result, self.steps.clone());
         results.files = files.iter().map(|f| f.0.clone()).collect();
-        for (kind, step) in &self.step_files {
-            let name = step_file_name(kind, *step);
-            if !results.files.contains(&name) {
-                results.files.push(name);
-            }
+        // Those of earlier steps are part of the run, too.
+        let earlier = self.step_files.iter().filter(|f| f.1 < step).map(|f| step_file_name(f.0, f.1));
+        let mut earlier: Vec<String> = earlier.collect();
+        earlier.sort();
+        results.files.extend(earlier);
+        if state.is_some() {
+            results.files.extend((0..step).map(restart_name));
         }
         files.push((RESULTS_FILE.into(), results.to_json().into_bytes()));
         files
