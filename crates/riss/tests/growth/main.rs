@@ -2,5 +2,9 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod laws;
+mod paths;
+mod pieces;
 mod random_plates;
+mod repetition;
 mod steps;

@@ -17,6 +17,9 @@ const MAX_CORRECTIONS: usize = 4;
 /// A corrected increment is good if the criterion turns the new tip by less than this [rad].
 const GOOD_TURN: f64 = 2e-3;
 
+/// A step whose path error is this part of the tolerance may be followed by one twice as long.
+const LONGER: f64 = 0.25;
+
 /// The model after an increment.
 pub(super) struct Grown {
     pub model: Model,
@@ -28,7 +31,7 @@ pub(super) struct Grown {
     pub memory: Vec<TipMemory>,
     /// The solution after the increment, if corrections have found it already.
     pub result: Option<Result<StaticResult>>,
-    /// Share of a whole increment that was taken.
+    /// Share of a whole increment to take next.
     pub scale: f64,
 }
 
@@ -90,6 +93,9 @@ pub(super) fn grow(
             grown.scale *= 0.5;
             corrections = 0;
         } else {
+            if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) < LONGER * t) {
+                grown.scale = (2.0 * grown.scale).min(1.0);
+            }
             grown.result = Some(result);
             return grown;
         }
@@ -128,7 +134,11 @@ fn make(model: &Model, plan: &StepPlan, shapes: &[Shape], scale: f64) -> Grown {
         let same = |j: &usize| *j != k && increments[*j].tip.crack == increments[k].tip.crack;
         (0..increments.len()).filter(same).map(|j| length_of(&increments[j].way)).sum()
     };
-    let made = (0..increments.len()).map(|k| (shapes[k].angle, (after(k) - before[k] - others(k)).max(0.0))).collect();
+    let length = |k: usize| match endings[k] {
+        Ending::Free => shapes[k].length,
+        Ending::Boundary(_) | Ending::Crack(_) => (after(k) - before[k] - others(k)).max(0.0),
+    };
+    let made = (0..increments.len()).map(|k| (shapes[k].angle, length(k))).collect();
     let mut memory: Vec<TipMemory> = plan
         .tips
         .iter()

@@ -219,8 +219,9 @@ fn by_rate(
             Rate::Unstable => {
                 record.status = TipStatus::Unstable;
                 let toughness = law.toughness().unwrap_or(f64::NAN);
+                let at_most = k * cycles.iter().map(|c| c.maximum).fold(0.0, f64::max);
                 record.reason =
-                    Some(format!("K_equivalent = {k:.5e} reaches the toughness {toughness:.5e} in a cycle"));
+                    Some(format!("K = {at_most:.5e} at the greatest load reaches the toughness {toughness:.5e}"));
             }
         }
     }

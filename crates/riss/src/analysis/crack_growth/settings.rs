@@ -112,7 +112,7 @@ pub enum IncrementControl {
         #[schemars(range(min = 0.0, max = 90.0))]
         angle_deg: f64,
     },
-    /// Halved, down to 1/16, until a step ends where two of half the length would: the path is converged step by step.
+    /// Halved, down to 1/16, until a step ends where two of half the length would; doubled again after steps that are four times better: the path is converged step by step.
     Converged {
         /// Distance between both ends over the increment, positive; about 0.01 is usual.
         #[schemars(range(min = 0.0, max = 1.0))]
