@@ -41,7 +41,7 @@ impl Problems {
     /// Reports `field` unless the condition `holds`; comparisons with NaN do not hold.
     fn demand(&mut self, field: impl std::fmt::Display, value: f64, allowed: &str, holds: fn(f64) -> bool) {
         if !(value.is_finite() && holds(value)) {
-            self.report(field, format!("is {value}"), allowed);
+            self.report(field, "out of range".to_string(), allowed);
         }
     }
 
