@@ -1,0 +1,150 @@
+//! Which numbers and words of the results have references.
+
+use super::path::{self, Point, Window};
+use serde_json::Value;
+
+/// Which number or word of the results is meant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Quantity {
+    /// A number at a crack tip.
+    Tip {
+        /// Name of the crack.
+        crack: String,
+        /// `start` or `end`.
+        end: String,
+        /// `K_I`, `K_II`, `J`, `T` or `kink_angle_deg`.
+        key: String,
+        /// Step of the run; 0 without growth.
+        step: usize,
+    },
+    /// A number of the whole body, in the first step.
+    Scalar(String),
+    /// A component of the force on a supported part, in the first step.
+    Reaction {
+        /// Name of the part.
+        part: String,
+        /// `x` or `y`.
+        axis: String,
+    },
+    /// Distance of the path at the end from a reference path.
+    Path {
+        /// Name of the crack.
+        crack: String,
+        /// The reference path.
+        reference: Vec<Point>,
+        /// Where they are compared.
+        window: Window,
+    },
+    /// Why growth ended.
+    EndKind,
+    /// What a tip did last.
+    TipStatus {
+        /// Name of the crack.
+        crack: String,
+        /// `start` or `end`.
+        end: String,
+    },
+    /// Name of the part or crack that the last increment of a tip meets.
+    Meets {
+        /// Name of the crack.
+        crack: String,
+        /// `start` or `end`.
+        end: String,
+    },
+    /// Load cycles at the end, or until a crack has a length.
+    Cycles {
+        /// Name and length of the crack; half the length if both ends are tips.
+        until: Option<(String, f64)>,
+    },
+}
+
+/// What a run says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measured {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word(String),
+}
+
+impl Quantity {
+    /// Name in tables.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Tip { crack, end, key, step: 0 } => format!("{key} at {crack}, {end}"),
+            Self::Tip { crack, end, key, step } => format!("{key} at {crack}, {end}, step {step}"),
+            Self::Scalar(key) => key.replace('_', " "),
+            Self::Reaction { part, axis } => format!("reaction {axis} of {part}"),
+            Self::Path { crack, .. } => format!("path of {crack}, distance"),
+            Self::EndKind => "end of growth".into(),
+            Self::TipStatus { crack, end } => format!("status of {crack}, {end}"),
+            Self::Meets { crack, end } => format!("{crack}, {end} meets"),
+            Self::Cycles { until: None } => "cycles".into(),
+            Self::Cycles { until: Some((crack, length)) } => format!("cycles until {crack} is {length} long"),
+        }
+    }
+
+    /// What the results of a run say.
+    pub fn find_in(&self, results: &Value) -> Option<Measured> {
+        let steps = results["steps"].as_array().map_or(&[][..], Vec::as_slice);
+        let first = steps.first().unwrap_or(&Value::Null);
+        let number = match self {
+            Self::Tip { crack, end, key, step } => tip(steps.get(*step)?, crack, end)?[key].as_f64()?,
+            // A run with growth has a strain energy in every step, and the last one has none if the body came apart.
+            Self::Scalar(key) => first[key].as_f64().or_else(|| results[key].as_f64())?,
+            Self::Reaction { part, axis } => first["reactions"][part][usize::from(axis == "y")].as_f64()?,
+            Self::Path { crack, reference, window } => {
+                path::distance(&path_of(steps.last()?, crack)?, reference, window)?
+            }
+            Self::EndKind => return word(&results["growth_end"]["kind"]),
+            Self::TipStatus { crack, end } => return word(&last_tip(steps, crack, end)?["status"]),
+            Self::Meets { crack, end } => {
+                let reason = last_tip(steps, crack, end)?["reason"].as_str()?;
+                return reason.split('`').nth(1).map(|name| Measured::Word(name.into()));
+            }
+            Self::Cycles { until: None } => steps.last()?["cycles"].as_f64()?,
+            Self::Cycles { until: Some((crack, length)) } => cycles_until(steps, crack, *length)?,
+        };
+        Some(Measured::Number(number))
+    }
+}
+
+fn word(value: &Value) -> Option<Measured> {
+    value.as_str().map(|w| Measured::Word(w.into()))
+}
+
+fn crack_of<'a>(step: &'a Value, name: &str) -> Option<&'a Value> {
+    step["cracks"].as_array()?.iter().find(|c| c["name"] == *name)
+}
+
+fn tip<'a>(step: &'a Value, crack: &str, end: &str) -> Option<&'a Value> {
+    crack_of(step, crack)?["tips"].as_array()?.iter().find(|t| t["end"] == *end)
+}
+
+/// The tip in the last step in which it is one.
+fn last_tip<'a>(steps: &'a [Value], crack: &str, end: &str) -> Option<&'a Value> {
+    steps.iter().rev().find_map(|s| tip(s, crack, end))
+}
+
+fn path_of(step: &Value, crack: &str) -> Option<Vec<Point>> {
+    let point = |p: &Value| Some([p[0].as_f64()?, p[1].as_f64()?]);
+    let path: Vec<Point> = crack_of(step, crack)?["path"].as_array()?.iter().map(point).collect::<Option<_>>()?;
+    (path.len() >= 2).then_some(path)
+}
+
+/// Linear between the steps before and after.
+fn cycles_until(steps: &[Value], crack: &str, length: f64) -> Option<f64> {
+    let point = |s: &Value| Some((length_of(s, crack)?, s["cycles"].as_f64()?));
+    let points: Vec<(f64, f64)> = steps.iter().map(point).collect::<Option<_>>()?;
+    let i = points.windows(2).position(|w| w[0].0 <= length && length <= w[1].0 * (1.0 + 1e-12))?;
+    let ((a, n), (b, m)) = (points[i], points[i + 1]);
+    Some(n + (m - n) * ((length - a) / (b - a)).min(1.0))
+}
+
+/// Length of a crack; half of it if both ends are tips.
+fn length_of(step: &Value, crack: &str) -> Option<f64> {
+    let path = path_of(step, crack)?;
+    let length: f64 = path.windows(2).map(|w| f64::hypot(w[1][0] - w[0][0], w[1][1] - w[0][1])).sum();
+    let ends = crack_of(step, crack)?["ends"].as_array()?;
+    Some(if ends.iter().all(|e| e == "tip") { 0.5 * length } else { length })
+}
