@@ -67,8 +67,8 @@ fn history_has_one_row_per_tip_and_a_header_without_tips() {
         std::fs::read_to_string(dir.path().join("history.csv")).unwrap()
     };
     let expected = "\
-step,load_factor,cycles,crack,end,x,y,angle_deg,a,K_I,K_II,K_uncertainty,J,T,kink_angle_deg,status
-0,1.0,,crack-1,end,0.0,0.0,0.0,1.0,3.0,,0.01,0.125,,-45.0,stationary
+step,load_factor,cycles,crack,end,x,y,angle_deg,a,K_I,K_II,K_uncertainty,J,T,kink_angle_deg,status,K_equivalent,increment,growth_rate
+0,1.0,,crack-1,end,0.0,0.0,0.0,1.0,3.0,,0.01,0.125,,-45.0,stationary,,,
 ";
     assert_eq!(history(&result), expected);
     result.step.cracks.clear();

@@ -3,7 +3,7 @@
 use riss::analysis::{
     CrackFaces, CrackRecord, Fields, NodeRecord, StaticResult, StepRecord, TipRecord, TipStatus, Warning,
 };
-use riss::crack::End;
+use riss::crack::{End, EndKind};
 use riss::exact::{CrackTipField, ExactField};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::Vector2;
@@ -33,6 +33,8 @@ pub fn result(n: usize) -> StaticResult {
             step: 0,
             load_factor: 1.0,
             cycles: None,
+            stability: None,
+            end: None,
             cracks: vec![crack()],
             reactions: vec![("bottom".into(), Vector2::new(0.0, -2.0))],
         },
@@ -58,6 +60,7 @@ fn crack() -> CrackRecord {
     CrackRecord {
         name: "crack-1".into(),
         path: vec![Vector2::new(-1.0, 0.0), Vector2::zeros()],
+        ends: [EndKind::Mouth, EndKind::Tip],
         tips: vec![TipRecord {
             end: End::End,
             position: FIELD.tip,
@@ -69,6 +72,10 @@ fn crack() -> CrackRecord {
             t_stress: None,
             configurational_force: Some(Vector2::new(0.125, f64::NAN)),
             kink_angle: Some(-std::f64::consts::FRAC_PI_4),
+            k_equivalent: None,
+            increment: None,
+            growth_rate: None,
+            reason: None,
             status: TipStatus::Stationary,
             radii: vec![0.25, 0.5],
         }],

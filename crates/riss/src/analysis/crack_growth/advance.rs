@@ -179,7 +179,9 @@ mod tests {
         Vector2::new(x, y)
     }
 
-    fn plate(cracks: &[(&[(f64, f64)], [EndKind; 2])]) -> Model {
+    type Points<'a> = &'a [(f64, f64)];
+
+    fn plate(cracks: &[(Points, [EndKind; 2])]) -> Model {
         let corners = [v(0.0, 0.0), v(10.0, 0.0), v(10.0, 6.0), v(0.0, 6.0)];
         let outline = (0..4).map(|k| Curve::Line { start: corners[k], end: corners[(k + 1) % 4] }).collect();
         let mut model = Model::plain(Domain::new(outline, vec![vec![Curve::circle(v(5.0, 5.0), 0.5)]]));
