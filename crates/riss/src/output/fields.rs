@@ -24,7 +24,8 @@ pub struct StepFile {
 /// `InvalidData` if the arrays of the fields do not fit together.
 pub fn step_files(result: &StaticResult, options: &OutputOptions) -> io::Result<Vec<StepFile>> {
     let mut grids = vec![];
-    if options.fields && !result.fields.positions.is_empty() {
+    // A step that could not be solved has none.
+    if options.fields && result.n_nodes > 0 {
         check(&result.fields)?;
         grids.push(("fields", body(&result.fields)));
         if !result.fields.crack_faces.is_empty() {
