@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::geometry::predicates::distance_to_segment;
 use crate::math::Vector2;
 use crate::model::{EdgeId, Model};
+use crate::nodes::triangulation::SIGHT_SHIFT;
 use crate::system::{Discretization, Solution};
 use rayon::prelude::*;
 
@@ -97,39 +98,75 @@ fn stressed_places(
         let on_loop = loops.is_none_or(|l| l.iter().any(|k| domain.loops[*k].contains(&edge)));
         on_part && on_loop
     };
+    let field = BoundaryStress { model, discrete, solution };
     let mut result = vec![];
     for range in &domain.loops {
         let pieces: Vec<_> = discrete.triangulation.boundary.iter().filter(|s| range.contains(&s.edge)).collect();
         // At the middle of each piece: corners and mouths have no tangent.
-        let places: Vec<Option<Place>> = pieces
-            .par_iter()
-            .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), piece| {
-                if !is_allowed(piece.edge) {
-                    return Ok(None);
-                }
-                let curve = &domain.edges[piece.edge];
-                let t = 0.5 * (piece.range[0] + piece.range[1]);
-                let (position, tangent, inward) = (curve.point(t), curve.tangent(t), -curve.right_normal(t));
-                let step = 1e-6 * curve.length() * (piece.range[1] - piece.range[0]);
-                let sight = position + inward * step;
-                discrete.approximation.evaluate(position, sight, Derivatives::First, around, shape)?;
-                let stress = model.material.stress(&shape.gradient(&solution.parameters));
-                Ok(Some(Place { position, inward, edge: piece.edge, stress: tangent.dot(&(stress * tangent)) }))
+        let middle = |k: usize| 0.5 * (pieces[k].range[0] + pieces[k].range[1]);
+        let places: Vec<Option<Place>> = (0..pieces.len())
+            .into_par_iter()
+            .map_init(Buffer::default, |buffer, k| match is_allowed(pieces[k].edge) {
+                true => field.at(pieces[k].edge, middle(k), buffer).map(Some),
+                false => Ok(None),
             })
             .collect::<Result<_>>()?;
         let n = places.len();
-        let at = |k: usize| places[k % n].map_or(f64::NEG_INFINITY, |p| p.stress);
+        let mut buffer = Buffer::default();
         for (k, place) in places.iter().enumerate() {
-            // Where all are allowed the loop is closed; elsewhere its ends are no maxima of their own.
+            let (before, after) = ((k + n - 1) % n, (k + 1) % n);
+            // Beyond the ends of what is allowed nothing is greater.
+            let is_less = |j: usize| places[j].is_none_or(|p| place.is_some_and(|q| p.stress <= q.stress));
             if let Some(place) = place
-                && place.stress >= at(k + 1)
-                && place.stress >= at(k + n - 1)
+                && is_less(before)
+                && is_less(after)
             {
-                result.push(Place { position: domain.on_edge(place.edge, place.position), ..*place });
+                // Between corners the maximum lies at the vertex of a parabola through three pieces.
+                let neighbor = |j: usize, turn: f64| {
+                    let near = places[j].filter(|p| p.edge == place.edge)?;
+                    let offset = middle(j) - middle(k);
+                    // The ends of a circle are one point.
+                    let offset = if offset * turn < 0.0 { offset + turn } else { offset };
+                    Some((offset, near.stress - place.stress))
+                };
+                let offset = match (neighbor(before, -1.0), neighbor(after, 1.0)) {
+                    (Some(a), Some(b)) => vertex(a, b),
+                    (Some(_), None) | (None, Some(_)) | (None, None) => 0.0,
+                };
+                result.push(field.at(place.edge, middle(k) + offset, &mut buffer)?);
             }
         }
     }
     Ok(result)
+}
+
+/// Where a parabola through the origin and two points `(x, y)` on either side of it, `y <= 0`, is greatest.
+fn vertex(a: (f64, f64), b: (f64, f64)) -> f64 {
+    let curvature = (b.1 / b.0 - a.1 / a.0) / (b.0 - a.0);
+    let slope = b.1 / b.0 - curvature * b.0;
+    if curvature < 0.0 { (-0.5 * slope / curvature).clamp(0.5 * a.0, 0.5 * b.0) } else { 0.0 }
+}
+
+type Buffer = (Surroundings, ShapeFunctions<2>);
+
+/// The tangential stress along the boundary.
+struct BoundaryStress<'a> {
+    model: &'a Model,
+    discrete: &'a Discretization,
+    solution: &'a Solution,
+}
+
+impl BoundaryStress<'_> {
+    /// At a parameter of an edge.
+    fn at(&self, edge: EdgeId, t: f64, (around, shape): &mut Buffer) -> Result<Place> {
+        let curve = &self.model.domain.edges[edge];
+        let (tangent, inward) = (curve.tangent(t), -curve.right_normal(t));
+        let position = self.model.domain.on_edge(edge, curve.point(t));
+        let sight = position + inward * (SIGHT_SHIFT * self.model.domain.area().sqrt());
+        self.discrete.approximation.evaluate(position, sight, Derivatives::First, around, shape)?;
+        let stress = self.model.material.stress(&shape.gradient(&self.solution.parameters));
+        Ok(Place { position, inward, edge, stress: tangent.dot(&(stress * tangent)) })
+    }
 }
 
 /// Whether cracks start again in a step after some have reached holes.
@@ -138,4 +175,18 @@ pub(super) fn starts_again(seeding: Option<&Seeding>) -> Option<&Seeding> {
         SeedingTime::Once => false,
         SeedingTime::AtReachedHoles => true,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::vertex;
+
+    #[test]
+    fn parabolas_have_their_vertex_found() {
+        // y = -(x - 0.3)² + 0.09.
+        let y = |x: f64| 0.09 - (x - 0.3f64).powi(2);
+        assert!((vertex((-1.0, y(-1.0)), (0.8, y(0.8))) - 0.3).abs() < 1e-14);
+        assert_eq!(vertex((-1.0, 0.0), (1.0, 0.0)), 0.0);
+        assert_eq!(vertex((-1.0, 0.0), (1.0, -1.0)), -0.5);
+    }
 }

@@ -138,7 +138,7 @@ pub struct Seeding {
     /// Length of a new crack [length], positive.
     #[schemars(range(min = 0.0))]
     pub length: f64,
-    /// Most cracks to start.
+    /// Most cracks to start at the beginning.
     #[serde(default)]
     pub number: Option<usize>,
     /// Tangential stress from which a crack starts [stress], positive.
