@@ -155,24 +155,23 @@ impl Results {
     /// The results of a run of several steps; `last` is the last that was solved, `files` is empty.
     pub fn of_steps(info: &RunInfo, last: &StaticResult, steps: Vec<StepResults>) -> Self {
         let stage_time_s = sum_by_stage(&info.stage_time_s);
-        let result = last;
         Self {
             riss: env!("CARGO_PKG_VERSION").into(),
             case: info.title.clone(),
             method: info.method.clone(),
             status: info.status,
-            nodes: result.n_nodes,
-            unknowns: result.n_unknowns,
-            integration_points: result.n_integration_points,
+            nodes: last.n_nodes,
+            unknowns: last.n_unknowns,
+            integration_points: last.n_integration_points,
             wall_time_s: finite(info.wall_time_s),
             stage_time_s,
             peak_memory_bytes: info.peak_memory_bytes,
-            strain_energy: finite(result.strain_energy),
-            energy_error: result.energy_error.and_then(finite),
-            residual: finite(result.residual),
+            strain_energy: finite(last.strain_energy),
+            energy_error: last.energy_error.and_then(finite),
+            residual: finite(last.residual),
             warnings: steps.iter().flat_map(|s| s.warnings.iter().cloned()).collect(),
             files: vec![],
-            growth_end: result.step.end.clone(),
+            growth_end: last.step.end.clone(),
             steps,
         }
     }

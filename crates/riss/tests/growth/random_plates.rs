@@ -139,32 +139,9 @@ fn random_plates_grow_to_the_end() {
     let mut failures = vec![];
     for seed in first..first + n {
         let model = plate(seed);
-        let start = std::time::Instant::now();
         let (steps, end) = grow(&model, &Settings::default(), &growth);
-        let (last, time) = (steps.records.len() - 1, start.elapsed().as_secs_f64());
-        let most = steps.n_nodes.iter().max().expect("there is a step");
-        println!(
-            "plate {seed}: {} cracks, {} holes, {last} steps, {most} nodes, {time:.1} s, {:?}: {}",
-            model.cracks.len(),
-            model.domain.loops.len() - 1,
-            end.kind,
-            end.reason
-        );
         check(seed, &model, &steps);
         if end.kind == GrowthEndKind::Failed {
-            if std::env::var_os("RISS_DUMP").is_some() {
-                for c in steps.cracks() {
-                    println!(
-                        "DUMP {} {:?} {:?}",
-                        c.name,
-                        c.ends,
-                        c.vertices.iter().map(|v| (v.x, v.y)).collect::<Vec<_>>()
-                    );
-                }
-                for e in &model.domain.edges {
-                    println!("EDGE {e:?}");
-                }
-            }
             failures.push((seed, end.reason));
         }
     }

@@ -56,6 +56,18 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
     }
 }
 
+/// The automatic increment follows from the cracks at the beginning, not from those of a restart.
+#[test]
+fn an_automatic_increment_stays_after_a_restart() {
+    let growth = GrowthSettings { increment: None, steps: 2, ..GrowthSettings::default() };
+    let whole = run(&growth, None, None);
+    let rest = run(&growth, Some(whole.states[1].clone()), None);
+    assert_eq!(rest.records, whole.records[1..]);
+    // A hundredth of the root of the area, which lies between a tenth and half of the shorter crack, 0.5 |(0.7, -0.2)|.
+    let increment = whole.tip(1, 0).increment.expect("it grows");
+    assert!((increment - 0.01 * 20f64.sqrt()).abs() < 1e-12, "{increment}");
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let runs = [1, 2, 4].map(|n| {

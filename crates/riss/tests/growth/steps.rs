@@ -12,7 +12,6 @@ use std::ops::ControlFlow;
 pub struct Steps {
     pub records: Vec<StepRecord>,
     pub states: Vec<GrowthState>,
-    pub n_nodes: Vec<usize>,
     /// Break off after this many steps.
     pub most: Option<usize>,
 }
@@ -25,7 +24,6 @@ impl Observer for Steps {
     fn step(&mut self, result: &StaticResult, state: Option<&GrowthState>) -> ControlFlow<()> {
         self.records.push(result.step.clone());
         self.states.extend(state.cloned());
-        self.n_nodes.push(result.n_nodes);
         match self.most {
             Some(most) if self.records.len() >= most => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),

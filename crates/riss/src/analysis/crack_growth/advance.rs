@@ -18,8 +18,17 @@ pub struct Increment {
     pub way: Vec<Vector2>,
 }
 
-/// Moves all tips at once; returns what each increment ends at.
-pub fn advance(model: &mut Model, increments: &[Increment]) -> Vec<Ending> {
+/// Where an increment really went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// What it ends at.
+    pub ending: Ending,
+    /// Length of the new stretch [length].
+    pub length: f64,
+}
+
+/// Moves all tips at once; returns where each increment went.
+pub fn advance(model: &mut Model, increments: &[Increment]) -> Vec<Arrival> {
     let walls = Walls::new(model);
     let mut ways: Vec<(Vec<Vector2>, Ending)> = increments.iter().map(|i| walls.clip(i.tip, &i.way)).collect();
     let speeds: Vec<f64> = increments.iter().map(|i| length_of(&i.way)).collect();
@@ -37,7 +46,7 @@ pub fn advance(model: &mut Model, increments: &[Increment]) -> Vec<Ending> {
             model.cracks[*crack].join_at(way[way.len() - 1]);
         }
     }
-    ways.into_iter().map(|w| w.1).collect()
+    ways.into_iter().map(|(way, ending)| Arrival { ending, length: length_of(&way) }).collect()
 }
 
 /// Where two ways come together.
@@ -197,6 +206,10 @@ mod tests {
         Increment { tip: TipId { crack, end }, way: vec![p, p + v(by.0, by.1)] }
     }
 
+    fn endings(model: &mut Model, increments: &[Increment]) -> Vec<Ending> {
+        advance(model, increments).into_iter().map(|a| a.ending).collect()
+    }
+
     const EDGE: [EndKind; 2] = [EndKind::Mouth, EndKind::Tip];
     const INNER: [EndKind; 2] = [EndKind::Tip; 2];
 
@@ -204,7 +217,7 @@ mod tests {
     fn free_increments_are_kept_exactly() {
         let mut model = plate(&[(&[(0.0, 3.0), (2.0, 3.0)], EDGE)]);
         let increments = [straight(&model, 0, End::End, (0.5, 0.1))];
-        assert_eq!(advance(&mut model, &increments), [Ending::Free]);
+        assert_eq!(endings(&mut model, &increments), [Ending::Free]);
         assert_eq!(model.cracks[0].vertices, [v(0.0, 3.0), v(2.0, 3.0), v(2.5, 3.1)]);
     }
 
@@ -216,12 +229,12 @@ mod tests {
         {
             let mut model = plate(&[(&[(5.0, 3.0), (from, 3.0)], INNER)]);
             let increments = [straight(&model, 0, End::End, (0.45, 0.0))];
-            assert_eq!(advance(&mut model, &increments), [ending]);
+            assert_eq!(endings(&mut model, &increments), [ending]);
             assert!((model.cracks[0].vertices[2] - v(to, 3.0)).norm() < 1e-12);
         }
         let mut model = plate(&[(&[(4.0, 5.0), (4.3, 5.0)], INNER)]);
         let increments = [straight(&model, 0, End::End, (0.3, 0.0))];
-        assert_eq!(advance(&mut model, &increments), [Ending::Boundary(4)]);
+        assert_eq!(endings(&mut model, &increments), [Ending::Boundary(4)]);
         assert!((model.cracks[0].vertices[2] - v(4.5, 5.0)).norm() < 1e-12);
         assert_eq!(model.cracks[0].ends, [EndKind::Tip, EndKind::Mouth]);
     }
@@ -230,7 +243,7 @@ mod tests {
     fn a_tip_that_meets_a_crack_makes_a_junction() {
         let mut model = plate(&[(&[(2.0, 1.0), (2.0, 3.0)], INNER), (&[(0.0, 2.0), (1.8, 2.0)], EDGE)]);
         let increments = [straight(&model, 1, End::End, (0.4, 0.0))];
-        assert_eq!(advance(&mut model, &increments), [Ending::Crack(0)]);
+        assert_eq!(endings(&mut model, &increments), [Ending::Crack(0)]);
         assert_eq!(model.cracks[0].vertices, [v(2.0, 1.0), v(2.0, 2.0), v(2.0, 3.0)]);
         assert_eq!(model.cracks[1].ends, [EndKind::Mouth, EndKind::Junction]);
         assert_eq!(model.cracks[0].ends, INNER);
@@ -241,7 +254,7 @@ mod tests {
         for offset in [0.0, 0.01] {
             let mut model = plate(&[(&[(1.0, 3.0), (3.0, 3.0)], INNER), (&[(3.4, 3.0 + offset), (5.0, 3.0)], INNER)]);
             let increments = [straight(&model, 0, End::End, (0.3, 0.0)), straight(&model, 1, End::Start, (-0.3, 0.0))];
-            assert_eq!(advance(&mut model, &increments), [Ending::Crack(1), Ending::Crack(0)]);
+            assert_eq!(endings(&mut model, &increments), [Ending::Crack(1), Ending::Crack(0)]);
             let (a, b) = (model.cracks[0].vertices[2], model.cracks[1].vertices[0]);
             assert!(a == b && (a - v(3.2, 3.0 + 0.5 * offset)).norm() < 1e-9, "{a:?} {b:?}");
             assert_eq!((model.cracks[0].ends[1], model.cracks[1].ends[0]), (EndKind::Junction, EndKind::Junction));
@@ -253,7 +266,7 @@ mod tests {
         // The first arrives at the crossing after a quarter of its way, the second at the end of its own.
         let mut model = plate(&[(&[(0.0, 2.0), (2.0, 2.0)], EDGE), (&[(2.1, 1.0), (2.1, 1.62)], INNER)]);
         let increments = [straight(&model, 0, End::End, (0.4, 0.0)), straight(&model, 1, End::End, (0.0, 0.4))];
-        assert_eq!(advance(&mut model, &increments), [Ending::Free, Ending::Crack(0)]);
+        assert_eq!(endings(&mut model, &increments), [Ending::Free, Ending::Crack(0)]);
         assert_eq!(model.cracks[0].vertices.len(), 4);
         assert!((model.cracks[1].vertices[2] - v(2.1, 2.0)).norm() < 1e-12);
         assert!(model.cracks[0].vertices.contains(&model.cracks[1].vertices[2]));
@@ -264,7 +277,7 @@ mod tests {
         let loop_like: &[(f64, f64)] = &[(1.0, 1.0), (3.0, 1.0), (3.0, 2.0), (2.0, 2.0), (2.0, 1.2)];
         let mut model = plate(&[(loop_like, INNER)]);
         let increments = [straight(&model, 0, End::End, (0.0, -0.3))];
-        assert_eq!(advance(&mut model, &increments), [Ending::Crack(0)]);
+        assert_eq!(endings(&mut model, &increments), [Ending::Crack(0)]);
         assert_eq!(model.cracks[0].vertices[1], v(2.0, 1.0));
         assert_eq!(model.cracks[0].ends, [EndKind::Tip, EndKind::Junction]);
     }

@@ -1,10 +1,10 @@
 //! From the plan of a step to longer cracks: at once, or corrected until the new tips agree.
 
-use super::advance::{Increment, advance, arc_way};
-use super::plan::{LEAST_SCALE, StepPlan};
+use super::advance::{Arrival, Increment, advance, arc_way};
+use super::plan::{LEAST_SCALE, Pending, StepPlan};
 use super::settings::{GrowthSettings, IncrementControl, IncrementForm};
 use super::state::{GrowthState, TipMemory};
-use super::walls::{Ending, length_of};
+use super::walls::Ending;
 use crate::analysis::linear_static::solve_step;
 use crate::analysis::{Observer, Settings, Stage, StaticResult};
 use crate::crack::{EndKind, TipId};
@@ -31,8 +31,6 @@ pub(super) struct Grown {
     pub memory: Vec<TipMemory>,
     /// The solution after the increment, if corrections have found it already.
     pub result: Option<Result<StaticResult>>,
-    /// Share of a whole increment to take next.
-    pub scale: f64,
 }
 
 /// Direction and curvature of one increment while it is corrected.
@@ -40,10 +38,11 @@ pub(super) struct Grown {
 struct Shape {
     angle: f64,
     curvature: f64,
+    last_curvature: f64,
     length: f64,
 }
 
-/// Makes the increments of a plan.
+/// Makes the increments of a plan; returns them and the share of a whole increment to take next.
 pub(super) fn grow(
     model: &Model,
     settings: &Settings,
@@ -51,31 +50,32 @@ pub(super) fn grow(
     plan: &StepPlan,
     state: &GrowthState,
     observer: &mut dyn Observer,
-) -> Grown {
+) -> (Grown, f64) {
     let is_curved = growth.form == IncrementForm::Curved;
     let mut shapes: Vec<Shape> = plan
         .tips
         .iter()
         .map(|t| {
             let curvature = if is_curved { state.memory(t.tip).curvature } else { 0.0 };
-            Shape { angle: t.angle, curvature, length: t.length }
+            Shape { angle: t.angle, curvature, last_curvature: curvature, length: t.length }
         })
         .collect();
-    let mut grown = make(model, plan, &shapes, state.scale);
+    let mut scale = state.scale;
+    let mut grown = make(model, plan, &shapes, 1.0);
     let corrects = is_curved || growth.criterion == GrowthCriterion::LocalSymmetry;
     let tolerance = match growth.control {
         IncrementControl::Converged { tolerance } => Some(tolerance),
         IncrementControl::Fixed | IncrementControl::HalvedOnTurns { .. } => None,
     };
     if !corrects && tolerance.is_none() {
-        return grown;
+        return (grown, scale);
     }
     let mut corrections = 0;
     loop {
         let result = solve_step(&grown.model, settings, state.step + 1, &mut Trial { observer });
         let Ok(found) = &result else {
             grown.result = Some(result);
-            return grown;
+            return (grown, scale);
         };
         let turns = turns_at_new_tips(&grown, growth, plan, found);
         let turn = turns.iter().flatten().fold(0.0, |m: f64, t| m.max(t.abs()));
@@ -88,34 +88,37 @@ pub(super) fn grow(
                     (None, _) => {}
                 }
             }
-        } else if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) > t) && grown.scale > LEAST_SCALE {
+        } else if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) > t) && scale > LEAST_SCALE {
             shapes.iter_mut().for_each(|s| s.length *= 0.5);
-            grown.scale *= 0.5;
+            scale *= 0.5;
             corrections = 0;
         } else {
             if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) < LONGER * t) {
-                grown.scale = (2.0 * grown.scale).min(1.0);
+                scale = (2.0 * scale).min(1.0);
             }
             grown.result = Some(result);
-            return grown;
+            return (grown, scale);
         }
-        let scale = grown.scale;
-        grown = make(model, plan, &shapes, scale);
+        grown = make(model, plan, &shapes, scale / state.scale);
     }
 }
 
 /// Distance between the ends of one increment and of two of half the length, over the length.
 ///
-/// Two straight halves end half a turn times half a length away; on arcs the curvature is what differs.
+/// Two straight halves: the second turns by about half the turn at the end, over half the length. On an arc the
+/// curvature is taken as constant; where it goes linearly from that of the last increment, by `c` in all, the true path
+/// ends `c length² / 12` beside the arc. A turn that is left over at the end adds half of it.
 fn path_error(shapes: &[Shape], turns: &[Option<f64>], is_curved: bool) -> f64 {
     let error = |(shape, turn): (&Shape, &Option<f64>)| {
         let turn = turn.unwrap_or(0.0).abs();
-        if is_curved { turn / 8.0 + shape.curvature.abs().powi(2) * shape.length.powi(2) / 48.0 } else { 0.25 * turn }
+        let change = (shape.curvature - shape.last_curvature).abs();
+        if is_curved { change * shape.length / 12.0 + 0.5 * turn } else { 0.25 * turn }
     };
     shapes.iter().zip(turns).map(error).fold(0.0, f64::max)
 }
 
-fn make(model: &Model, plan: &StepPlan, shapes: &[Shape], scale: f64) -> Grown {
+/// Makes increments of the given shapes, in a `share` of the step that was planned.
+fn make(model: &Model, plan: &StepPlan, shapes: &[Shape], share: f64) -> Grown {
     let increments: Vec<Increment> = plan
         .tips
         .iter()
@@ -125,29 +128,25 @@ fn make(model: &Model, plan: &StepPlan, shapes: &[Shape], scale: f64) -> Grown {
             Increment { tip: t.tip, way: arc_way(frame.position, frame.angle + s.angle, s.curvature, s.length) }
         })
         .collect();
-    let before: Vec<f64> = increments.iter().map(|i| model.cracks[i.tip.crack].length()).collect();
     let mut model = model.clone();
-    let endings = advance(&mut model, &increments);
-    let after = |k: usize| model.cracks[increments[k].tip.crack].length();
-    // Both ends of one crack may have grown.
-    let others = |k: usize| -> f64 {
-        let same = |j: &usize| *j != k && increments[*j].tip.crack == increments[k].tip.crack;
-        (0..increments.len()).filter(same).map(|j| length_of(&increments[j].way)).sum()
+    let arrivals = advance(&mut model, &increments);
+    let length = |(shape, arrival): (&Shape, &Arrival)| match arrival.ending {
+        // The polygon around an arc is a little longer.
+        Ending::Free => shape.length,
+        Ending::Boundary(_) | Ending::Crack(_) => arrival.length,
     };
-    let length = |k: usize| match endings[k] {
-        Ending::Free => shapes[k].length,
-        Ending::Boundary(_) | Ending::Crack(_) => (after(k) - before[k] - others(k)).max(0.0),
-    };
-    let made = (0..increments.len()).map(|k| (shapes[k].angle, length(k))).collect();
+    let made = shapes.iter().zip(&arrivals).map(|pair| (pair.0.angle, length(pair))).collect();
     let mut memory: Vec<TipMemory> = plan
         .tips
         .iter()
         .zip(shapes)
         .map(|(t, s)| TipMemory { tip: t.tip, curvature: s.curvature, pending: 0.0 })
         .collect();
-    memory.extend(plan.pending.iter().map(|&(tip, pending)| TipMemory { tip, curvature: 0.0, pending }));
+    let save_up = |p: &Pending| TipMemory { tip: p.tip, curvature: 0.0, pending: p.before + p.added * share };
+    memory.extend(plan.pending.iter().map(save_up));
     memory.sort_by_key(|m| m.tip);
-    Grown { model, endings, made, memory, result: None, scale }
+    let endings = arrivals.iter().map(|a| a.ending).collect();
+    Grown { model, endings, made, memory, result: None }
 }
 
 /// Turn that the criterion asks for at each new tip that is still one [rad].

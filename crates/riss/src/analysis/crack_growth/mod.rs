@@ -23,10 +23,6 @@ pub use settings::GrowthSettings;
 pub use state::GrowthState;
 use walls::Ending;
 
-/// The automatic increment: shares of the shortest crack, and of the root of the area.
-const INCREMENT_OF_CRACK: [f64; 2] = [0.1, 0.5];
-const INCREMENT_OF_BODY: f64 = 0.01;
-
 /// Grows all cracks of a model until something ends it; every step goes to the observer.
 ///
 /// - `start`: where to go on; the first step if not given
@@ -53,7 +49,7 @@ pub fn crack_growth(
         }
     };
     model.cracks = state.cracks.clone();
-    let increment = growth.increment.unwrap_or_else(|| automatic_increment(&model));
+    let increment = growth.increment.unwrap_or(state.automatic_increment);
     let mut result = solve_step(&model, settings, state.step, observer)?;
     loop {
         // The state as it was: what a resumed run starts from.
@@ -63,12 +59,12 @@ pub fn crack_growth(
             let _ = observer.step(&result, Some(&beginning));
             return Ok(Some(end));
         }
-        let grown = grow(&model, settings, growth, &plan, &state, observer);
+        let (grown, scale) = grow(&model, settings, growth, &plan, &state, observer);
         note_endings(&model, &plan, &grown, &mut result.step);
         if observer.step(&result, Some(&beginning)).is_break() {
             return Ok(None);
         }
-        state = next_state(&model, &plan, &grown, &state, result.step.load_factor);
+        state = GrowthState { scale, ..next_state(&model, &plan, &grown, &state, result.step.load_factor) };
         model = grown.model;
         let mut solved = grown.result;
         // The outline is no hole.
@@ -100,21 +96,9 @@ pub fn crack_growth(
     }
 }
 
-/// A length that follows the cracks and the body.
-fn automatic_increment(model: &Model) -> f64 {
-    let shortest = model.cracks.iter().map(|c| c.handbook_length()).fold(f64::INFINITY, f64::min);
-    let of_body = INCREMENT_OF_BODY * model.domain.area().sqrt();
-    if shortest.is_finite() {
-        of_body.clamp(INCREMENT_OF_CRACK[0] * shortest, INCREMENT_OF_CRACK[1] * shortest)
-    } else {
-        of_body
-    }
-}
-
 /// Writes what each increment really did into the record.
 fn note_endings(model: &Model, plan: &StepPlan, grown: &Grown, step: &mut StepRecord) {
     for ((planned, ending), (angle, length)) in plan.tips.iter().zip(&grown.endings).zip(&grown.made) {
-        let names: Vec<String> = step.cracks.iter().map(|c| c.name.clone()).collect();
         let record = record_mut(step, planned.tip);
         record.kink_angle = Some(*angle);
         record.increment = Some(*length);
@@ -131,7 +115,7 @@ fn note_endings(model: &Model, plan: &StepPlan, grown: &Grown, step: &mut StepRe
             }
             Ending::Crack(crack) => {
                 record.status = TipStatus::ReachedCrack;
-                record.reason = Some(format!("its increment meets `{}` {at}", names[*crack]));
+                record.reason = Some(format!("its increment meets `{}` {at}", model.cracks[*crack].name));
             }
         }
     }
@@ -144,7 +128,8 @@ fn next_state(model: &Model, plan: &StepPlan, grown: &Grown, state: &GrowthState
         cycles: state.cycles,
         leader: leader(plan, model),
         load_factor: Some(load_factor),
-        scale: grown.scale,
+        automatic_increment: state.automatic_increment,
+        scale: state.scale,
         tips: grown.memory.clone(),
         reached_loops: state.reached_loops.clone(),
     };

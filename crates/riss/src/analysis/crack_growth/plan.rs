@@ -29,11 +29,21 @@ pub(super) struct TipPlan {
     pub k_equivalent: f64,
 }
 
-/// All tips that grow, and what is saved up for the others [length].
+/// Growth that is saved up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pending {
+    pub tip: TipId,
+    /// From earlier steps [length].
+    pub before: f64,
+    /// In this step, if it is taken whole [length].
+    pub added: f64,
+}
+
+/// All tips that grow, and what is saved up for others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct StepPlan {
     pub tips: Vec<TipPlan>,
-    pub pending: Vec<(TipId, f64)>,
+    pub pending: Vec<Pending>,
 }
 
 /// Fills what growth adds to the record of a step, and says which tips grow.
@@ -59,11 +69,11 @@ pub(super) fn plan_step(
         AdvanceLaw::QuasiStatic(law) => quasi_static(model, law, step, state, length),
         AdvanceLaw::Fatigue(law) => {
             let cycles = law.spectrum.cycles();
-            count_cycles(&law.rate, &cycles, step, state);
+            step.end = count_cycles(&law.rate, &cycles, step, state);
             by_rate(&law.rate, &cycles, step, state, length)
         }
     };
-    step.end = reached_limit(model, growth, step).or_else(|| nothing_grows(step, &plan));
+    step.end = step.end.take().or_else(|| reached_limit(model, growth, step)).or_else(|| nothing_grows(step, &plan));
     match step.end {
         Some(_) => StepPlan::default(),
         None => plan,
@@ -180,17 +190,35 @@ fn quasi_static(model: &Model, law: &QuasiStatic, step: &mut StepRecord, state: 
     plan
 }
 
-/// Adds the cycles of the last increment, now that the factor after it is known.
-fn count_cycles(law: &fatigue::GrowthLaw, cycles: &[LoadCycle], step: &mut StepRecord, state: &mut GrowthState) {
+/// Adds the cycles of the last increment, now that the factor after it is known. An increment that no number of cycles
+/// makes is the end.
+fn count_cycles(
+    law: &fatigue::GrowthLaw,
+    cycles: &[LoadCycle],
+    step: &mut StepRecord,
+    state: &mut GrowthState,
+) -> Option<GrowthEnd> {
+    let mut end = None;
     if let Some(leader) = state.leader.take() {
         let [a_start, a_end] = leader.lengths;
         let now = all_tips(step).find(|(id, _)| *id == leader.tip).and_then(|(_, t)| t.k_equivalent);
         // A tip that has arrived somewhere has no factor any more; that of a crack in a wide body stands in.
         let k_end = now.filter(|k| *k > 0.0).unwrap_or(leader.k_equivalent * (a_end / a_start).sqrt());
         let way = fatigue::Increment { a_start, a_end, k_start: leader.k_equivalent, k_end };
-        state.cycles += fatigue::cycles_over(law, cycles, way).cycles;
+        let life = fatigue::cycles_over(law, cycles, way).cycles;
+        if life.is_finite() {
+            state.cycles += life;
+        } else {
+            let reason = format!(
+                "{} creeps towards its threshold: K_equivalent falls from {:.5e} to {k_end:.5e} over the last increment",
+                tip_name(step, leader.tip),
+                leader.k_equivalent
+            );
+            end = Some(GrowthEnd { kind: GrowthEndKind::NoTipGrows, reason });
+        }
     }
     step.cycles = Some(state.cycles);
+    end
 }
 
 /// Every tip by its growth per cycle.
@@ -228,11 +256,12 @@ fn by_rate(
     let fastest = rates.iter().map(|r| r.1).fold(0.0, f64::max);
     for (tip, rate) in rates {
         let share = rate / fastest;
-        let wanted = share * length + state.memory(tip).pending;
+        let (before, added) = (state.memory(tip).pending, share * length);
+        let wanted = before + added;
         if wanted >= LEAST_SHARE * length {
-            grow(step, tip, wanted.min(length), format!("grows by {rate:.4e} a cycle"), &mut plan);
+            grow(step, tip, wanted, format!("grows by {rate:.4e} a cycle"), &mut plan);
         } else {
-            plan.pending.push((tip, wanted));
+            plan.pending.push(Pending { tip, before, added });
             let reason = format!("grows by {rate:.4e} a cycle, {share:.1e} of the fastest; {wanted:.3e} is saved up");
             record_mut(step, tip).reason = Some(reason);
         }
@@ -240,10 +269,10 @@ fn by_rate(
     plan
 }
 
-/// The leader of a plan: the tip with the longest increment, the first of equals.
+/// The tip that sets the pace: it is driven hardest, the first of equals.
 pub(super) fn leader(plan: &StepPlan, model: &Model) -> Option<Leader> {
-    let longest = plan.tips.iter().map(|t| t.length).fold(0.0, f64::max);
-    let tip = plan.tips.iter().find(|t| t.length == longest)?;
+    let hardest = plan.tips.iter().map(|t| t.k_equivalent).fold(0.0, f64::max);
+    let tip = plan.tips.iter().find(|t| t.k_equivalent == hardest)?;
     let length = model.cracks[tip.tip.crack].handbook_length();
     Some(Leader { tip: tip.tip, lengths: [length; 2], k_equivalent: tip.k_equivalent })
 }

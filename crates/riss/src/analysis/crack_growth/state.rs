@@ -1,9 +1,12 @@
 //! What a step needs to know of the steps before it: enough to go on from there.
 
 use crate::crack::{CrackPath, TipId};
-use crate::math::Vector2;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
+
+/// The automatic increment: shares of the shortest crack, and of the root of the area.
+const INCREMENT_OF_CRACK: [f64; 2] = [0.1, 0.5];
+const INCREMENT_OF_BODY: f64 = 0.01;
 
 /// Where crack growth stands at the beginning of a step. The same state gives the same steps, bit by bit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,6 +22,8 @@ pub struct GrowthState {
     pub leader: Option<Leader>,
     /// Factor on the loads in the step before.
     pub load_factor: Option<f64>,
+    /// Increment that follows from the cracks at the beginning, for a case that gives none [length].
+    pub automatic_increment: f64,
     /// Share of the increment that the increment control has left.
     pub scale: f64,
     /// What tips carry from step to step.
@@ -54,7 +59,8 @@ pub struct TipMemory {
 impl GrowthState {
     /// The state of the first step.
     pub fn first(model: &Model) -> Self {
-        Self { cracks: model.cracks.clone(), scale: 1.0, ..Self::default() }
+        let automatic_increment = automatic_increment(model);
+        Self { cracks: model.cracks.clone(), automatic_increment, scale: 1.0, ..Self::default() }
     }
 
     /// Memory of a tip; nothing for a new one.
@@ -62,9 +68,15 @@ impl GrowthState {
         let known = self.tips.iter().find(|m| m.tip == tip).copied();
         known.unwrap_or(TipMemory { tip, curvature: 0.0, pending: 0.0 })
     }
+}
 
-    /// All positions, for messages and tests.
-    pub fn tip_positions(&self) -> Vec<Vector2> {
-        self.cracks.iter().flat_map(|c| c.tip_ends().map(|e| c.end_position(e))).collect()
+/// A length that follows the cracks and the body.
+fn automatic_increment(model: &Model) -> f64 {
+    let shortest = model.cracks.iter().map(|c| c.handbook_length()).fold(f64::INFINITY, f64::min);
+    let of_body = INCREMENT_OF_BODY * model.domain.area().sqrt();
+    if shortest.is_finite() {
+        of_body.clamp(INCREMENT_OF_CRACK[0] * shortest, INCREMENT_OF_CRACK[1] * shortest)
+    } else {
+        of_body
     }
 }

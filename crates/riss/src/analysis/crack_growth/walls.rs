@@ -42,10 +42,10 @@ struct CrackSegment {
     ends: [Vector2; 2],
 }
 
-/// Where a path first meets a wall.
+/// A place on a wall.
 #[derive(Clone, Copy, Debug)]
 struct Hit {
-    /// Parameter on the segment of the path.
+    /// Parameter on a segment that meets it, or distance from a point beside it [length].
     at: f64,
     point: Vector2,
     ending: Ending,
@@ -127,10 +127,9 @@ impl<'a> Walls<'a> {
     fn closest(&self, tip: TipId, p: Vector2, reach: f64) -> Option<Hit> {
         let domain = &self.model.domain;
         let (edge, t) = domain.closest_edge(p);
-        let mut best = Hit { at: reach, point: domain.edges[edge].point(t), ending: Ending::Boundary(edge) };
-        let on_boundary = (best.point - p).norm();
-        best.at = best.at.min(on_boundary);
-        let mut found = on_boundary <= reach;
+        let on_boundary = domain.edges[edge].point(t);
+        let boundary = Hit { at: (on_boundary - p).norm(), point: on_boundary, ending: Ending::Boundary(edge) };
+        let mut best = Some(boundary).filter(|h| h.at <= reach);
         let mut near = vec![];
         self.tree.visit(&Aabb::around(p, Vector2::repeat(reach)), |i| near.push(i));
         near.sort_unstable();
@@ -138,12 +137,11 @@ impl<'a> Walls<'a> {
             let wall = &self.segments[i as usize];
             let point = closest_on_segment(p, wall.ends[0], wall.ends[1]);
             let distance = (point - p).norm();
-            if !self.is_behind(tip, wall) && distance <= reach && (!found || distance < best.at) {
-                best = Hit { at: distance, point, ending: Ending::Crack(wall.crack) };
-                found = true;
+            if !self.is_behind(tip, wall) && distance <= reach && best.is_none_or(|h| distance < h.at) {
+                best = Some(Hit { at: distance, point, ending: Ending::Crack(wall.crack) });
             }
         }
-        found.then_some(best)
+        best
     }
 
     /// Whether a wall is the segment that the tip ends: it is no obstacle ahead.
