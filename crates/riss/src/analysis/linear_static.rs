@@ -201,16 +201,15 @@ fn evaluate_tip(
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
     record.j = Some(mean(|t| t.j));
     record.t_stress = Some(mean(|t| t.t_stress));
-    let touches = contact(view.frame.position) > 0.0;
-    record.status = if touches {
-        TipStatus::Closed
-    } else if model.contact.is_some() || k1 > 0.0 || k1.abs() < 1e-6 * k2.abs() {
-        TipStatus::Stationary
-    } else {
-        TipStatus::Closed
-    };
+    record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)
+}
+
+/// What a tip does, by its factors and the contact pressure on the faces there.
+fn status(k1: f64, k2: f64, contact_pressure: f64) -> TipStatus {
+    let opens = k1 > 0.0 || k1.abs() < 1e-6 * k2.abs();
+    if opens && contact_pressure <= 0.0 { TipStatus::Stationary } else { TipStatus::Closed }
 }
 
 /// Opening of the faces right behind a tip [length].

@@ -120,7 +120,7 @@ pub struct TipRecord {
 pub enum TipStatus {
     /// Evaluated, not grown.
     Stationary,
-    /// Under compression: `K_I <= 0`, where the faces would touch; with contact, that they touch at the tip.
+    /// Under compression: `K_I <= 0`, where the faces would touch; with contact also that they touch at the tip.
     Closed,
     /// No integration domain fits: fracture quantities are absent.
     NotEvaluated,
