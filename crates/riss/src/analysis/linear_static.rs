@@ -1,20 +1,27 @@
 //! One linear elastic solution and everything that is read from it.
 
+use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
 use super::fields::sample_fields;
 use super::record::*;
 use super::settings::Settings;
+use crate::approximation::moving_least_squares::Derivatives;
+use crate::approximation::{ShapeFunctions, Surroundings};
 use crate::crack::TipId;
 use crate::error::{Error, Result};
-use crate::fracture::{ForceAt, SolutionField, TipIntegrals, TipView, tip_integrals};
+use crate::fracture::{FacePressure, ForceAt, SolutionField, TipIntegrals, TipLoads, TipView, tip_integrals};
 use crate::math::Vector2;
 use crate::model::{FieldPoint, Model, RigidMotion};
 use crate::nodes::generate;
+use crate::nodes::triangulation::SIGHT_SHIFT;
+use crate::system::crack_faces::contact_pressure;
 use crate::system::solve::UNBALANCED;
-use crate::system::{ConstraintMethod, Discretization, Solution, assemble, solve};
+use crate::system::{ConstraintMethod, Discretization, Solution, assemble};
 
 /// Stabilization of Nitsche's method grows by this factor when the matrix is not definite.
 const STABILIZATION_GROWTH: f64 = 10.0;
+/// How far behind a tip its opening is taken, over the length of the last segment: no node is so near.
+const TIP_STEP: f64 = 1e-5;
 
 /// Solves the linear elastic problem once and evaluates every tip.
 ///
@@ -100,16 +107,30 @@ pub(super) fn solve_once(
         warnings.observer.stage(Stage::Assembly);
         let system = assemble(model, discrete, &method)?;
         warnings.observer.stage(Stage::Solve);
-        match (solve(model, discrete, system, &method, settings.solver), method) {
+        match (solve_in_contact(model, discrete, system, &method, settings.solver), method) {
             (Err(Error::Factorization { .. }), ConstraintMethod::Nitsche { factor }) if attempt < 3 => {
                 let factor = factor * STABILIZATION_GROWTH;
                 warnings.add(format!("the stabilization of the supports was too small and is now {factor}"));
                 method = ConstraintMethod::Nitsche { factor };
             }
-            (result, _) => return Ok((result?, method)),
+            (result, _) => {
+                let (solution, search) = result?;
+                if search.n_changed > 0 {
+                    warnings.add(unsettled(&search));
+                }
+                return Ok((solution, method));
+            }
         }
     }
     unreachable!("the last attempt returns")
+}
+
+fn unsettled(search: &ContactSearch) -> String {
+    format!(
+        "the contact of crack faces did not settle in {} solutions: {} of their knots touch, {} changed in the last \
+         one; a smaller penalty may help",
+        search.n_solutions, search.n_closed, search.n_changed
+    )
 }
 
 fn evaluate_cracks(
@@ -154,8 +175,14 @@ fn evaluate_tip(
     let field = SolutionField { discrete, solution };
     let force = |p: Vector2| body_force_at(model, solution, p);
     let acts = model.body_force.is_some() || solution.imbalance > UNBALANCED;
-    let body_force = acts.then_some(&force as ForceAt);
-    let found = tip_integrals(&view, &radii, &settings.fracture, &model.material, body_force, &field)?;
+    let contact = |p: Vector2| contact_pressure(discrete, &solution.contact_pressures, id.crack, p);
+    let pressure = |p: Vector2| model.face_pressure(id.crack, p) + contact(p);
+    let face_pressure = match model.loads_faces(id.crack) {
+        true => Some(FacePressure { at: &pressure, tip_opening: tip_opening(discrete, solution, &view)? }),
+        false => None,
+    };
+    let loads = TipLoads { body_force: acts.then_some(&force as ForceAt), face_pressure };
+    let found = tip_integrals(&view, &radii, &settings.fracture, &model.material, &loads, &field)?;
     let mean = |get: fn(&TipIntegrals) -> f64| found.iter().map(get).sum::<f64>() / found.len() as f64;
     let spread = |get: fn(&TipIntegrals) -> f64| {
         let values = || found.iter().map(get);
@@ -167,9 +194,28 @@ fn evaluate_tip(
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
     record.j = Some(mean(|t| t.j));
     record.t_stress = Some(mean(|t| t.t_stress));
-    record.status = if k1 > 0.0 || k1.abs() < 1e-6 * k2.abs() { TipStatus::Stationary } else { TipStatus::Closed };
+    record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)
+}
+
+/// What a tip does, by its factors and the contact pressure on the faces there.
+fn status(k1: f64, k2: f64, contact_pressure: f64) -> TipStatus {
+    let opens = k1 > 0.0 || k1.abs() < 1e-6 * k2.abs();
+    if opens && contact_pressure <= 0.0 { TipStatus::Stationary } else { TipStatus::Closed }
+}
+
+/// Opening of the faces right behind a tip [length].
+fn tip_opening(discrete: &Discretization, solution: &Solution, view: &TipView) -> Result<f64> {
+    let step = TIP_STEP * (view.path[1] - view.path[0]).norm();
+    let at = view.frame.global(Vector2::new(-step, 0.0));
+    let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
+    let mut side = |shift: f64| {
+        let sight = at + view.frame.x2() * (shift * SIGHT_SHIFT * step);
+        discrete.approximation.evaluate(at, sight, Derivatives::First, &mut around, &mut shape)?;
+        Ok(shape.value(&solution.parameters).dot(&view.frame.x2()))
+    };
+    Ok(side(1.0)? - side(-1.0)?)
 }
 
 /// All that acts inside the body: the model's body force, and what balances loads out of balance.

@@ -1,5 +1,6 @@
 //! Analyses: they join all the stages below and report to an [`Observer`].
 
+pub mod contact;
 pub mod crack_growth;
 pub mod energy;
 pub mod fields;

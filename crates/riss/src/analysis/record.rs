@@ -184,7 +184,7 @@ impl TipRecord {
 pub enum TipStatus {
     /// Evaluated, not grown.
     Stationary,
-    /// Under compression: `K_I <= 0`, where the faces would touch.
+    /// Under compression: `K_I <= 0`, where the faces would touch; with contact also that they touch at the tip.
     Closed,
     /// No integration domain fits: fracture quantities are absent.
     NotEvaluated,

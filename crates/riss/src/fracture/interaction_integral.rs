@@ -1,8 +1,9 @@
 //! Stress intensity factors, T-stress and J at a tip by domain integrals [Moran1987].
 //!
 //! With `P_1j = W δ_1j - σ_ij u_i,1` in the tip frame, the energy release rate is
-//! `J = -∫ P_1j q,j dA - ∫ b_i u_i,1 q dA + ∫_faces P_1j m_j q ds`, `b` the body force, `m` out of the body. The interaction integral takes the mixed terms of
-//! the solution and an auxiliary field. That field is continued analytically up to the crack itself, however it bends
+//! `J = -∫ P_1j q,j dA - ∫ b_i u_i,1 q dA + ∫_faces P_1j m_j q ds`, `b` the body force, `m` out of the body. On the faces
+//! `P_1j m_j = W m_1 - t_i u_i,1` with the traction `t`. The interaction integral takes the mixed terms of the solution and
+//! an auxiliary field. That field is continued analytically up to the crack itself, however it bends
 //! behind the tip; what traction it then leaves on the faces stands in the face term.
 
 use super::settings::{FractureSettings, JIntegral, TipDomainShape};
@@ -61,9 +62,31 @@ impl GradientField for SolutionField<'_> {
 /// Force per volume at a point of the body, global axes [stress/length].
 pub type ForceAt<'a> = &'a (dyn Fn(Vector2) -> Vector2 + Sync);
 
+/// Pressure on both faces at a point of the crack [stress]; positive pushes them apart.
+pub type PressureAt<'a> = &'a (dyn Fn(Vector2) -> f64 + Sync);
+
+/// What acts on the faces of a crack.
+#[derive(Clone, Copy)]
+pub struct FacePressure<'a> {
+    /// The pressure along the crack.
+    pub at: PressureAt<'a>,
+    /// Opening of the solution just behind the tip [length]: where sight ends at the crack it does not go to zero.
+    pub tip_opening: f64,
+}
+
+/// What acts around a tip.
+#[derive(Clone, Copy, Default)]
+pub struct TipLoads<'a> {
+    /// Inside the body, if anything.
+    pub body_force: Option<ForceAt<'a>>,
+    /// On the crack faces, if anything.
+    pub face_pressure: Option<FacePressure<'a>>,
+}
+
 /// Evaluates every domain of a tip, smallest first.
 ///
-/// - `body_force`: what acts inside the body, if anything
+/// T is the stress along the crack that does not fade at the tip. The interaction with a point force gives it against
+/// the stress across the crack, `(σ_11 - σ_22) / E'`, and `σ_22` is minus the pressure on the faces.
 ///
 /// # Errors
 /// Those of the field.
@@ -72,7 +95,7 @@ pub fn tip_integrals<F: GradientField>(
     radii: &[f64],
     settings: &FractureSettings,
     material: &Elasticity,
-    body_force: Option<ForceAt>,
+    loads: &TipLoads,
     field: &F,
 ) -> Result<Vec<TipIntegrals>> {
     radii
@@ -85,14 +108,16 @@ pub fn tip_integrals<F: GradientField>(
             let faces = integrate(view, &domain.faces, material, field, |p, state| {
                 state.face_term(p.normal_local(view)).map(|v| v * p.weight * p.q.x)
             })?;
-            let body = body_force_term(body_force, view, (settings.domain, radius, PLATEAU), material, field)?;
-            (0..4).for_each(|i| sum[i] += faces[i] + body[i]);
+            let work = load_terms(loads, view, (settings.domain, radius, PLATEAU), material, field)?;
+            (0..4).for_each(|i| sum[i] += faces[i] + work[i]);
             let j = match settings.j_integral {
                 JIntegral::Domain => sum[3],
-                JIntegral::Contour => contour_j(view, radius, settings, material, body_force, field)?,
+                JIntegral::Contour => contour_j(view, radius, settings, material, loads, field)?,
             };
             let young = material.effective_young();
-            Ok(TipIntegrals { radius, k1: 0.5 * young * sum[0], k2: 0.5 * young * sum[1], t_stress: young * sum[2], j })
+            let across = loads.face_pressure.map_or(0.0, |p| -(p.at)(view.frame.position));
+            let t_stress = young * sum[2] + across;
+            Ok(TipIntegrals { radius, k1: 0.5 * young * sum[0], k2: 0.5 * young * sum[1], t_stress, j })
         })
         .collect()
 }
@@ -103,45 +128,63 @@ fn contour_j<F: GradientField>(
     radius: f64,
     settings: &FractureSettings,
     material: &Elasticity,
-    body_force: Option<ForceAt>,
+    loads: &TipLoads,
     field: &F,
 ) -> Result<f64> {
     let contour = view.contour(settings.domain, radius);
     let around = integrate(view, &contour, material, field, |p, state| {
         state.eshelby_along(p.normal_local(view)).map(|v| v * p.weight)
     })?;
-    let faces = view.domain(settings.domain, radius).faces;
+    let faces = view.faces(settings.domain, radius, 1.0, 1);
     let inside = integrate(view, &faces, material, field, |p, state| {
         state.face_term(p.normal_local(view)).map(|v| v * p.weight)
     })?;
-    let body = body_force_term(body_force, view, (settings.domain, radius, 1.0), material, field)?;
-    Ok(around[3] + inside[3] + body[3])
+    let work = load_terms(loads, view, (settings.domain, radius, 1.0), material, field)?;
+    Ok(around[3] + inside[3] + work[3])
 }
 
-/// What the body force adds over a domain of given shape, radius and plateau of q.
-fn body_force_term<F: GradientField>(
-    body_force: Option<ForceAt>,
+/// What loads inside a domain of given shape, radius and plateau of q add: `-∫ b_i u_i,1 q dA - ∫_faces t_i u_i,1 q ds`.
+fn load_terms<F: GradientField>(
+    loads: &TipLoads,
     view: &TipView,
     (shape, radius, plateau): (TipDomainShape, f64, f64),
     material: &Elasticity,
     field: &F,
 ) -> Result<Integrals> {
-    let Some(force) = body_force else { return Ok([0.0; 4]) };
-    let points = view.interior(shape, radius, plateau);
-    integrate(view, &points, material, field, |p, state| {
-        let force = force(p.position);
-        let local = Vector2::new(force.dot(&view.frame.x1()), force.dot(&view.frame.x2()));
-        state.work_along(local).map(|v| -v * p.weight * p.q.x)
-    })
+    let mut sum = [0.0; 4];
+    if let Some(force) = loads.body_force {
+        let points = view.interior(shape, radius, plateau);
+        let body = integrate(view, &points, material, field, |p, state| {
+            state.work_along(local(view, force(p.position))).map(|v| -v * p.weight * p.q.x)
+        })?;
+        (0..4).for_each(|i| sum[i] += body[i]);
+    }
+    if let Some(pressure) = loads.face_pressure {
+        let mut points = view.faces(shape, radius, plateau, 0);
+        // A pressure pushes against the body: the traction is -p m.
+        points.iter_mut().for_each(|p| p.weight *= (pressure.at)(p.position));
+        let faces = integrate(view, &points, material, field, |p, state| {
+            state.work_along(p.normal_local(view)).map(|v| v * p.weight * p.q.x)
+        })?;
+        (0..4).for_each(|i| sum[i] += faces[i]);
+        // The integral of the opening's derivative begins with its jump at the tip.
+        sum[3] += (pressure.at)(view.frame.position) * pressure.tip_opening;
+    }
+    Ok(sum)
+}
+
+/// Components in the tip frame.
+fn local(view: &TipView, v: Vector2) -> Vector2 {
+    Vector2::new(v.dot(&view.frame.x1()), v.dot(&view.frame.x2()))
 }
 
 impl DomainPoint {
     fn q_local(&self, view: &TipView) -> Vector2 {
-        Vector2::new(self.q.dot(&view.frame.x1()), self.q.dot(&view.frame.x2()))
+        local(view, self.q)
     }
 
     fn normal_local(&self, view: &TipView) -> Vector2 {
-        Vector2::new(self.normal.dot(&view.frame.x1()), self.normal.dot(&view.frame.x2()))
+        local(view, self.normal)
     }
 }
 
@@ -199,13 +242,13 @@ impl State {
         [mixed[0], mixed[1], mixed[2], own]
     }
 
-    /// `b_i u_i,1`.
+    /// `f_i u_i,1`.
     fn work_along(&self, force: Vector2) -> Integrals {
         let mixed = self.auxiliary.map(|(gradient, _)| force.dot(&gradient.column(0)));
         [mixed[0], mixed[1], mixed[2], force.dot(&self.gradient.column(0))]
     }
 
-    /// `P_1j m_j` on a face without traction.
+    /// `P_1j m_j` on a face, less what the traction does.
     fn face_term(&self, m: Vector2) -> Integrals {
         let own = 0.5 * self.stress.dot(&self.gradient) * m.x;
         let mixed = self
@@ -250,7 +293,7 @@ mod tests {
         for domain in [TipDomainShape::Disc, TipDomainShape::Square] {
             let settings = FractureSettings { domain, ..FractureSettings::default() };
             let field = Exact(exact, material);
-            let found = tip_integrals(&view, &[0.2, 0.9], &settings, &material, None, &field).unwrap();
+            let found = tip_integrals(&view, &[0.2, 0.9], &settings, &material, &TipLoads::default(), &field).unwrap();
             let j = (1.3f64 * 1.3 + 0.7 * 0.7) / material.effective_young();
             for t in found {
                 assert!((t.k1 - 1.3).abs() < 1e-6, "{domain:?} {t:?}");
@@ -258,7 +301,7 @@ mod tests {
                 assert!((t.t_stress - 0.4).abs() < 1e-5, "{domain:?} {t:?}");
                 assert!((t.j - j).abs() < 1e-6, "{domain:?} {t:?}");
             }
-            let contour = contour_j(&view, 0.5, &settings, &material, None, &field).unwrap();
+            let contour = contour_j(&view, 0.5, &settings, &material, &TipLoads::default(), &field).unwrap();
             assert!((contour - j).abs() < 1e-6, "{contour} {j}");
         }
     }

@@ -10,6 +10,8 @@ pub mod settings;
 pub mod tip_domain;
 
 pub use growth_criterion::{EquivalentFactor, GrowthCriterion, TipDriving, kinked_factors};
-pub use interaction_integral::{ForceAt, GradientField, SolutionField, TipIntegrals, tip_integrals};
+pub use interaction_integral::{
+    FacePressure, ForceAt, GradientField, PressureAt, SolutionField, TipIntegrals, TipLoads, tip_integrals,
+};
 pub use settings::{FractureSettings, JIntegral, TipDomainShape};
 pub use tip_domain::TipView;

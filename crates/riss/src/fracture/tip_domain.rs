@@ -7,6 +7,7 @@ use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::{Vector2, turn_left};
 use crate::model::Model;
 use crate::nodes::spacing::free_radius;
+use crate::nodes::triangulation::SIGHT_SHIFT;
 use std::f64::consts::{PI, TAU};
 
 /// Sizes of the automatic domains, over that of the largest one that fits.
@@ -16,8 +17,8 @@ pub const PLATEAU: f64 = 0.35;
 /// Points across the ring and around it.
 const RADIAL_POINTS: usize = 12;
 const ANGULAR_POINTS: usize = 96;
-/// Points on each crack face segment in the ring.
-const FACE_POINTS: usize = 8;
+/// Points on each stretch of a crack face along which q is smooth.
+const FACE_POINTS: usize = 16;
 
 /// The crack as seen from its tip.
 #[derive(Clone, Debug)]
@@ -158,7 +159,7 @@ impl TipView {
                 }
             }
         }
-        self.add_faces(&mut domain, shape);
+        domain.faces = self.faces(shape, radius, PLATEAU, 1);
         domain
     }
 
@@ -230,37 +231,73 @@ impl TipView {
         domain.area.push(DomainPoint { position, sight: position, r, theta, q, weight, normal: Vector2::zeros() });
     }
 
-    /// Adds both faces of all crack segments inside the domain but the first, on which nothing acts.
-    fn add_faces(&self, domain: &mut TipDomain, shape: TipDomainShape) {
+    /// Points on both faces of the crack inside the domain, from the segment number `first` on, with q along the first
+    /// axis: one up to the share `plateau` of the way out, then falling to zero.
+    ///
+    /// On the segment at the tip the points crowd there, as the root of r: they integrate `1/√r` well.
+    pub fn faces(&self, shape: TipDomainShape, radius: f64, plateau: f64, first: usize) -> Vec<DomainPoint> {
+        let mut points = vec![];
         let line = gauss_legendre(FACE_POINTS);
-        let tip = self.frame.position;
-        for w in self.path.windows(2).skip(1) {
-            let e = w[1] - w[0];
-            // The path runs away from the tip; material above it (left of x1) is to its right.
-            let left = turn_left(e.normalize());
-            for &(t, wt) in &line {
-                let position = w[0] + e * t;
-                let local = self.frame.local(position);
-                let r = local.norm();
-                let angle = self.crack_angle(r);
-                let s = r / (rim(shape, angle) * domain.radius);
-                let q = ((1.0 - s) / (1.0 - PLATEAU)).clamp(0.0, 1.0);
-                if q == 0.0 {
-                    continue;
-                }
-                for (theta, inward) in [(angle, -left), (angle - TAU, left)] {
-                    let shift = crate::nodes::triangulation::SIGHT_SHIFT * (position - tip).norm().min(e.norm());
-                    domain.faces.push(DomainPoint {
-                        position,
-                        sight: position + inward * shift,
-                        r,
-                        theta,
-                        q: Vector2::new(q, 0.0),
-                        weight: wt * e.norm(),
-                        normal: -inward,
-                    });
+        for (k, w) in self.path.windows(2).enumerate().skip(first) {
+            let stops = self.stops(w, shape, radius, plateau);
+            for piece in stops.windows(2).filter(|p| p[1] > p[0]) {
+                let (from, length) = (piece[0], piece[1] - piece[0]);
+                for &(s, ws) in &line {
+                    let (t, wt) =
+                        if k == 0 && from == 0.0 { (s * s * length, 2.0 * s * ws) } else { (from + s * length, ws) };
+                    let position = w[0] + (w[1] - w[0]) * t;
+                    let level = self.level(position, shape, radius);
+                    let q = if level <= plateau { 1.0 } else { ((1.0 - level) / (1.0 - plateau)).max(0.0) };
+                    if q > 0.0 {
+                        self.add_pair(&mut points, position, w[1] - w[0], q, wt * length);
+                    }
                 }
             }
+        }
+        points
+    }
+
+    /// Parameters between which q is smooth on a segment of the crack.
+    fn stops(&self, w: &[Vector2], shape: TipDomainShape, radius: f64, plateau: f64) -> Vec<f64> {
+        let level = |t: f64| self.level(w[0] + (w[1] - w[0]) * t, shape, radius);
+        let mut stops = vec![0.0];
+        for target in [plateau, 1.0] {
+            let (mut low, mut high) = (0.0, 1.0);
+            if level(low) < target && level(high) > target {
+                for _ in 0..50 {
+                    let middle = 0.5 * (low + high);
+                    if level(middle) < target { low = middle } else { high = middle }
+                }
+                stops.push(low);
+            }
+        }
+        stops.push(1.0);
+        stops
+    }
+
+    /// Share of the way out of the domain at a point of the crack.
+    fn level(&self, position: Vector2, shape: TipDomainShape, radius: f64) -> f64 {
+        let r = self.frame.local(position).norm();
+        r / (rim(shape, self.crack_angle(r)) * radius)
+    }
+
+    /// Adds the point on both faces of a segment along `e`, which leads away from the tip.
+    fn add_pair(&self, points: &mut Vec<DomainPoint>, position: Vector2, e: Vector2, q: f64, share: f64) {
+        // Material above the path (left of x1) is to its right.
+        let left = turn_left(e.normalize());
+        let r = self.frame.local(position).norm();
+        let angle = self.crack_angle(r);
+        let shift = SIGHT_SHIFT * r.min(e.norm());
+        for (theta, inward) in [(angle, -left), (angle - TAU, left)] {
+            points.push(DomainPoint {
+                position,
+                sight: position + inward * shift,
+                r,
+                theta,
+                q: Vector2::new(q, 0.0),
+                weight: share * e.norm(),
+                normal: -inward,
+            });
         }
     }
 }

@@ -1,17 +1,19 @@
 //! Integration points: every scheme is lowered to flat lists of them.
 //!
 //! [`cells`] makes them from the triangles between the nodes, [`background`] from a grid that the boundary clips,
-//! [`boundary`] along the edges of the body.
+//! [`boundary`] along the edges of the body, [`crack_faces`] along cracks.
 
 pub mod background;
 pub mod boundary;
 pub mod cells;
+pub mod crack_faces;
 pub mod rules;
 pub mod settings;
 
 use crate::math::Vector;
 pub use boundary::{BoundaryElement, BoundaryPoint, boundary_elements};
 pub use cells::{EdgePoint, IntegrationCells};
+pub use crack_faces::{CrackFaceElement, CrackFacePoint, crack_face_elements};
 pub use settings::{GradientCorrection, IntegrationSettings, Scheme};
 
 /// A position with its integration weight [length^D].

@@ -41,6 +41,15 @@ impl TractionValue {
     }
 }
 
+/// A pressure on both faces of a crack, along its whole path however long it grows.
+#[derive(Clone, Debug)]
+pub struct CrackFaceLoad {
+    /// Index of the crack in the model.
+    pub crack: usize,
+    /// Pressure [stress]: positive pushes the faces apart. It has no normal to depend on: that is zero.
+    pub pressure: ScalarField,
+}
+
 /// Force per volume by component [stress/length].
 #[derive(Clone, Debug)]
 pub struct BodyForce(pub [ScalarField; 2]);

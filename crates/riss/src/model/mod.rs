@@ -2,6 +2,7 @@
 //!
 //! Has never heard of nodes. Valid by construction when it comes from `case::build`.
 
+pub mod contact;
 pub mod domain;
 pub mod field;
 pub mod load;
@@ -10,9 +11,11 @@ pub mod support;
 use crate::crack::{CrackPath, TipFrame, TipId};
 use crate::exact::ExactField;
 use crate::material::{Elasticity, PlaneState};
+use crate::math::Vector2;
+pub use contact::Contact;
 pub use domain::{BoundaryPart, Domain, EdgeId, PartId};
 pub use field::{FieldPoint, ScalarField};
-pub use load::{BodyForce, BoundaryLoad, PointLoad, TractionValue};
+pub use load::{BodyForce, BoundaryLoad, CrackFaceLoad, PointLoad, TractionValue};
 use std::sync::Arc;
 pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
 
@@ -31,6 +34,10 @@ pub struct Model {
     pub cracks: Vec<CrackPath>,
     /// Tractions on boundary parts.
     pub loads: Vec<BoundaryLoad>,
+    /// Pressures on the faces of cracks.
+    pub crack_face_loads: Vec<CrackFaceLoad>,
+    /// What keeps crack faces from overlapping; without it they may.
+    pub contact: Option<Contact>,
     /// Force per volume.
     pub body_force: Option<BodyForce>,
     /// Forces at points.
@@ -58,6 +65,8 @@ impl Model {
             thickness: 1.0,
             cracks: vec![],
             loads: vec![],
+            crack_face_loads: vec![],
+            contact: None,
             body_force: None,
             point_loads: vec![],
             supports: vec![],
@@ -66,6 +75,17 @@ impl Model {
             rigid_motion: RigidMotion::Supported,
             exact: None,
         }
+    }
+
+    /// Pressure on the faces of a crack at a point of its path [stress]; positive pushes them apart.
+    pub fn face_pressure(&self, crack: usize, position: Vector2) -> f64 {
+        let at = FieldPoint { position, normal: Vector2::zeros() };
+        self.crack_face_loads.iter().filter(|l| l.crack == crack).map(|l| l.pressure.value(&at)).sum()
+    }
+
+    /// Whether anything acts on the faces of a crack.
+    pub fn loads_faces(&self, crack: usize) -> bool {
+        self.contact.is_some() || self.crack_face_loads.iter().any(|l| l.crack == crack)
     }
 
     /// All tips, in the order of cracks and ends.

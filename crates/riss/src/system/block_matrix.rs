@@ -67,6 +67,31 @@ impl BlockMatrix {
         result
     }
 
+    /// The same matrix in a pattern in which all nodes of each list meet, too.
+    pub fn widened<'a>(&self, lists: impl Iterator<Item = &'a [u32]>) -> Self {
+        let row = |i: usize| self.row_starts[i]..self.row_starts[i + 1];
+        let mut rows: Vec<Vec<u32>> = (0..self.n_nodes()).map(|i| self.columns[row(i)].to_vec()).collect();
+        for list in lists {
+            for (k, &i) in list.iter().enumerate() {
+                rows[i as usize].extend_from_slice(&list[..=k]);
+            }
+        }
+        let mut result = Self { row_starts: vec![0], ..Self::default() };
+        for (i, mut columns) in rows.into_iter().enumerate() {
+            columns.sort_unstable();
+            columns.dedup();
+            let known = &self.columns[row(i)];
+            result.blocks.extend(
+                columns
+                    .iter()
+                    .map(|j| known.binary_search(j).map_or([0.0; 4], |k| self.blocks[self.row_starts[i] + k])),
+            );
+            result.columns.extend(columns);
+            result.row_starts.push(result.columns.len());
+        }
+        result
+    }
+
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
         self.row_starts.len() - 1

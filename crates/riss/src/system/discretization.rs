@@ -9,7 +9,8 @@ use crate::geometry::obstacles::Obstacles;
 use crate::geometry::tree::BoxTree;
 use crate::integration::cells::as_usize;
 use crate::integration::{
-    BoundaryElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme, boundary_elements,
+    BoundaryElement, CrackFaceElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme,
+    boundary_elements, crack_face_elements,
 };
 use crate::math::Vector2;
 use crate::model::Model;
@@ -81,6 +82,8 @@ pub struct Discretization {
     pub cells: IntegrationCells,
     /// Boundary elements.
     pub boundary: Vec<BoundaryElement>,
+    /// Elements along cracks whose faces something acts on.
+    pub crack_faces: Vec<CrackFaceElement>,
     /// Neighbors of each cell.
     pub cell_nodes: NodeLists,
     /// Neighbors of each boundary element.
@@ -113,10 +116,21 @@ impl Discretization {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
-        let (approximation, lists) = safeguard(nodes, obstacles, *approximation, &cells, &boundary)?;
-        let (of_cells, of_boundary) = lists.split_at(cells.len());
-        let (cell_nodes, boundary_nodes) = (NodeLists::from_lists(of_cells), NodeLists::from_lists(of_boundary));
-        Ok(Self { approximation, triangulation, node_of_copy, cells, boundary, cell_nodes, boundary_nodes })
+        let crack_faces = crack_face_elements(model, &chains, integration);
+        let parts = Parts { cells: &cells, boundary: &boundary, crack_faces: &crack_faces };
+        let (approximation, lists) = safeguard(nodes, obstacles, *approximation, &parts)?;
+        let (of_cells, rest) = lists.split_at(cells.len());
+        let [cell_nodes, boundary_nodes] = [of_cells, &rest[..boundary.len()]].map(NodeLists::from_lists);
+        Ok(Self {
+            approximation,
+            triangulation,
+            node_of_copy,
+            cells,
+            boundary,
+            crack_faces,
+            cell_nodes,
+            boundary_nodes,
+        })
     }
 
     /// Number of nodes.
@@ -148,7 +162,14 @@ fn cell_views(cells: &IntegrationCells, cell: usize) -> impl Iterator<Item = (Ve
     points.chain(cells.edge_points[as_usize(&cells.edge_ranges[cell])].iter().map(|p| (p.position, p.sight)))
 }
 
-/// What the points of one cell or boundary element see.
+/// All that holds integration points: cells, then boundary elements, then elements of cracks.
+struct Parts<'a> {
+    cells: &'a IntegrationCells,
+    boundary: &'a [BoundaryElement],
+    crack_faces: &'a [CrackFaceElement],
+}
+
+/// What the points of one cell or element see.
 #[derive(Default)]
 struct Inspection {
     /// All nodes that any of the points sees, ascending.
@@ -191,27 +212,32 @@ fn inspect(
     result
 }
 
-/// Inspects cells (first) and boundary elements (after them) by index.
-fn inspect_all(
-    approximation: &MovingLeastSquares,
-    cells: &IntegrationCells,
-    boundary: &[BoundaryElement],
-    which: &[usize],
-) -> Vec<Inspection> {
-    let n_cells = cells.len();
-    which
-        .par_iter()
-        .map_init(Surroundings::default, |around, &i| {
-            if i < n_cells {
-                approximation.survey(&cells.bounds(i), around);
-                inspect(approximation, cell_views(cells, i), around)
-            } else {
-                let element = &boundary[i - n_cells];
-                approximation.survey(&element.bounds(), around);
-                inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
-            }
-        })
-        .collect()
+impl Parts<'_> {
+    fn len(&self) -> usize {
+        self.cells.len() + self.boundary.len() + self.crack_faces.len()
+    }
+
+    fn inspect(&self, approximation: &MovingLeastSquares, i: usize, around: &mut Surroundings) -> Inspection {
+        let (n_cells, n_boundary) = (self.cells.len(), self.boundary.len());
+        if i < n_cells {
+            approximation.survey(&self.cells.bounds(i), around);
+            inspect(approximation, cell_views(self.cells, i), around)
+        } else if i < n_cells + n_boundary {
+            let element = &self.boundary[i - n_cells];
+            approximation.survey(&element.bounds(), around);
+            inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
+        } else {
+            let element = &self.crack_faces[i - n_cells - n_boundary];
+            approximation.survey(&element.bounds(), around);
+            let views = element.points.iter().flat_map(|p| p.sights.map(|sight| (p.position, sight)));
+            inspect(approximation, views, around)
+        }
+    }
+
+    /// Inspects parts by index.
+    fn inspect_all(&self, approximation: &MovingLeastSquares, which: &[usize]) -> Vec<Inspection> {
+        which.par_iter().map_init(Surroundings::default, |around, &i| self.inspect(approximation, i, around)).collect()
+    }
 }
 
 fn nodes_of(triangulation: &Triangulation, is_node: &[bool]) -> (Nodes<2>, Vec<Option<u32>>) {
@@ -253,20 +279,19 @@ fn set_supports(
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
-/// cells, then of all boundary elements.
+/// parts.
 fn safeguard(
     mut nodes: Nodes<2>,
     obstacles: Obstacles,
     settings: ApproximationSettings,
-    cells: &IntegrationCells,
-    boundary: &[BoundaryElement],
+    parts: &Parts,
 ) -> Result<(MovingLeastSquares, Vec<Vec<u32>>)> {
-    let all: Vec<usize> = (0..cells.len() + boundary.len()).collect();
+    let all: Vec<usize> = (0..parts.len()).collect();
     let mut suspects = all.clone();
     let tree = BoxTree::of_points(&nodes.positions);
     for round in 0..=SUPPORT_ROUNDS {
         let approximation = MovingLeastSquares::new(nodes, obstacles.clone(), settings);
-        let found = inspect_all(&approximation, cells, boundary, &suspects);
+        let found = parts.inspect_all(&approximation, &suspects);
         let poor = || found.iter().flat_map(|i| &i.poor);
         // Poor but not singular is taken after the last round.
         if let Some(worst) = poor().min_by(|a, b| a.quality.total_cmp(&b.quality)) {
@@ -282,7 +307,7 @@ fn safeguard(
             }
         }
         // Larger supports reach other cells too.
-        let lists = if round == 0 { found } else { inspect_all(&approximation, cells, boundary, &all) };
+        let lists = if round == 0 { found } else { parts.inspect_all(&approximation, &all) };
         return Ok((approximation, lists.into_iter().map(|i| i.neighbors).collect()));
     }
     unreachable!("the last round returns")

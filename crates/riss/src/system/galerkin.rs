@@ -2,6 +2,7 @@
 
 use super::block_matrix::{BlockMatrix, LocalMatrix};
 use super::constraints;
+use super::crack_faces;
 use super::discretization::Discretization;
 use super::settings::ConstraintMethod;
 use crate::approximation::moving_least_squares::Derivatives;
@@ -25,7 +26,7 @@ pub struct LinearSystem {
     pub load: Vec<f64>,
 }
 
-/// Assembles cells, boundary loads, springs and supports.
+/// Assembles cells, boundary and crack face loads, springs and supports.
 pub fn assemble(model: &Model, discrete: &Discretization, method: &ConstraintMethod) -> Result<LinearSystem> {
     let n = discrete.n_nodes();
     let extra = constraints::point_lists(model, discrete)?;
@@ -38,6 +39,7 @@ pub fn assemble(model: &Model, discrete: &Discretization, method: &ConstraintMet
         constraints::boundary_matrix(model, discrete, &supports, i, scratch, local)
     })?;
     constraints::add_point_loads(model, discrete, &mut system.load)?;
+    crack_faces::add_face_loads(model, discrete, &mut system.load)?;
     Ok(system)
 }
 
@@ -57,7 +59,8 @@ pub struct Scratch {
 }
 
 impl LinearSystem {
-    fn add(
+    /// Computes `n` local matrices in parallel and adds them in order.
+    pub(super) fn add(
         &mut self,
         n: usize,
         compute: impl Fn(usize, &mut Scratch, &mut LocalMatrix) -> Result<()> + Sync,

@@ -2,6 +2,7 @@
 
 pub mod block_matrix;
 pub mod constraints;
+pub mod crack_faces;
 pub mod discretization;
 pub mod galerkin;
 pub mod linear_solver;

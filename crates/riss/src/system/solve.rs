@@ -26,6 +26,8 @@ pub struct Solution {
     pub multipliers: Vec<f64>,
     /// Forces of point supports, per thickness, row by row.
     pub point_forces: Vec<f64>,
+    /// Contact pressure at the knots along cracks [stress]; empty without contact.
+    pub contact_pressures: Vec<f64>,
     /// Relative residual of the linear system.
     pub residual: f64,
     /// Body force that balances the loads, where only mean rigid motion is removed.

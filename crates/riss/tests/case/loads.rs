@@ -1,9 +1,9 @@
 //! Loads, supports and known solutions.
 
-use super::{good, template};
+use super::{Template, bad, good, template};
 use riss::case::Case;
 use riss::math::{Matrix2, Vector2};
-use riss::model::{Direction, FieldPoint, TractionValue};
+use riss::model::{Contact, Direction, FieldPoint, TractionValue};
 
 fn read(rest: &str) -> Case {
     let mut template = template();
@@ -76,4 +76,35 @@ fn listed_nodes_on_the_boundary_are_left_out_with_a_note() {
     let case = read("[remote_stress]\nyy = 1\n[nodes.layout.listed]\npositions = [[0, 0], [1, 1], [7, 3]]\n");
     let riss::nodes::settings::Layout::Listed(listed) = &case.settings.nodes.layout else { panic!("listed") };
     assert_eq!((listed.positions.as_slice(), case.notes.len()), ([[1.0, 1.0]].as_slice(), 1));
+}
+
+/// A case with nothing but a crack.
+fn with_crack(lines: &str) -> Template {
+    let geometry = format!("{}[[crack]]\npath = [[0, 8], [3.5, 8]]\n{lines}\n", template().geometry);
+    Template { geometry, rest: String::new(), ..template() }
+}
+
+#[test]
+fn pressure_in_a_crack_is_a_load_and_goes_with_its_crack() {
+    let mut template = with_crack("pressure = '2*x + y + nx'");
+    template.geometry += "[[crack]]\npath = [[1, 3], [2, 3]]\n[[crack]]\npath = [[1, 12], [2, 12]]\npressure = -3\n";
+    let model = good(&template).model;
+    let at = Vector2::new(1.0, 8.0);
+    assert_eq!([0, 1, 2].map(|crack| model.face_pressure(crack, at)), [10.0, 0.0, -3.0]);
+    assert_eq!([0, 1, 2].map(|crack| model.loads_faces(crack)), [true, false, true]);
+}
+
+#[test]
+fn no_pressure_in_a_crack_is_no_load() {
+    for pressure in ["0", "'0*x'"] {
+        assert_eq!(bad(&with_crack(&format!("pressure = {pressure}"))), "nothing loads the body");
+    }
+}
+
+#[test]
+fn contact_has_a_default_penalty() {
+    assert!(read("[remote_stress]\nyy = 1\n").model.contact.is_none());
+    let penalty =
+        |lines: &str| read(&format!("[remote_stress]\nyy = 1\n[contact]\n{lines}")).model.contact.unwrap().penalty;
+    assert_eq!((penalty(""), penalty("penalty = 20")), (Contact::default().penalty, 20.0));
 }

@@ -2,8 +2,10 @@
 
 mod arc_crack;
 mod bodies;
+mod closed_crack;
 mod energy_release;
 mod near_tip;
+mod pressurized_crack;
 mod robustness;
 mod shear_edge_crack;
 mod tip_quantities;

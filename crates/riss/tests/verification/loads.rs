@@ -1,10 +1,11 @@
-//! Body forces against closed forms.
+//! Body forces and loads on crack faces against closed forms.
 
 use crate::bodies::*;
-use riss::exact::ExactField;
+use riss::crack::EndKind;
+use riss::exact::{ExactField, LinearField};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Matrix2, Vector2};
-use riss::model::{BodyForce, Direction, ScalarField};
+use riss::model::{BodyForce, BoundaryLoad, CrackFaceLoad, Direction, RigidMotion, ScalarField, TractionValue};
 use std::sync::Arc;
 
 /// A column of height 2 under its own weight: `σ_yy = -w (2 - y)`, held at its foot by the exact displacement.
@@ -53,5 +54,33 @@ fn column_under_its_own_weight() {
         assert!(error < 0.014, "{error:.2e}");
         let foot = reaction(&result, "bottom");
         assert!((foot - Vector2::new(0.0, 3.0 * HEIGHT)).norm() < 1e-9 * 6.0, "{foot:?}");
+    }
+}
+
+/// The same pressure all around a body and in its cracks is a uniform stress: a patch test of the loads on crack faces.
+/// K vanishes, T is the stress along the crack.
+#[test]
+fn pressure_all_around_and_inside_a_kinked_crack_is_uniform() {
+    for plane in [PlaneState::Strain, PlaneState::Stress] {
+        let mut model = body(rectangle((-1.0, -1.0), (1.0, 1.0)), plane);
+        model.cracks = vec![
+            crack(&[(-1.0, 0.3), (-0.4, 0.2), (-0.2, 0.4)], [EndKind::Mouth, EndKind::Tip]),
+            crack(&[(-0.1, -0.4), (0.5, -0.1)], [EndKind::Tip; 2]),
+        ];
+        model.rigid_motion = RigidMotion::MeanIsZero;
+        let stress = Matrix2::from_diagonal_element(-2.0);
+        let gradient = model.material.strain(&stress);
+        model.exact = Some(Arc::new(LinearField { constant: Vector2::zeros(), gradient }));
+        model.loads = vec![BoundaryLoad { part: None, value: TractionValue::Pressure(2.0.into()) }];
+        model.crack_face_loads = (0..2).map(|crack| CrackFaceLoad { crack, pressure: 2.0.into() }).collect();
+        let result = run(&model, &with_nodes(graded(0.2)));
+        let error = result.energy_error.expect("the field is known");
+        assert!(error < 1e-10, "{error:.2e}");
+        assert!(result.warnings.is_empty(), "{:?}", result.warnings);
+        for tip in result.step.cracks.iter().flat_map(|c| &c.tips) {
+            // On bent faces the quadrature of the tip fields is good to some 1e-5.
+            assert!(tip.k1.unwrap().abs() < 1e-3 && tip.k2.unwrap().abs() < 1e-3, "{tip:?}");
+            assert!((tip.t_stress.unwrap() + 2.0).abs() < 1e-3, "{tip:?}");
+        }
     }
 }

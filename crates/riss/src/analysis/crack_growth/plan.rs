@@ -93,6 +93,8 @@ fn judge(model: &Model, growth: &GrowthSettings, tip: &mut TipRecord, held: bool
     if held {
         tip.status = TipStatus::Held;
         tip.reason = Some("the case holds this crack".into());
+    } else if model.contact.is_some() && tip.status == TipStatus::Closed {
+        tip.reason = Some("the faces touch at the tip".into());
     } else if k1 < -CLOSURE * k2.abs() || (k1 <= 0.0 && k2 == 0.0) {
         tip.status = TipStatus::Closed;
         tip.reason = Some(format!("K_I = {k1:.4e} presses the faces together"));

@@ -1,13 +1,14 @@
 //! Crack paths: ends put on the boundary or recognized as tips, everything between them inside the body.
 
 use super::crossings::{Segment, first_contact, folds_back};
+use super::loads::{Tried, try_field};
 use super::outline::vector;
 use super::report::Report;
 use crate::case::schema;
 use crate::crack::{CrackPath, EndKind};
 use crate::geometry::curve::Curve;
 use crate::math::Vector2;
-use crate::model::Domain;
+use crate::model::{CrackFaceLoad, Domain, FieldPoint, ScalarField};
 
 /// An end this close to the boundary, times the size of the body, lies on it.
 const ON_BOUNDARY: f64 = 1e-6;
@@ -15,11 +16,23 @@ const ON_BOUNDARY: f64 = 1e-6;
 const OVERHANG: f64 = 0.05;
 /// Turn of an arc in one segment [degrees].
 const ARC_STEP: f64 = 2.0;
+/// Stretches of each segment at whose ends a pressure is tried.
+const PRESSURE_SAMPLES: usize = 8;
 /// More points in one crack are refused.
 const MAX_POINTS: usize = 20_000;
 
+/// All cracks of a case.
+pub(super) struct Cracks {
+    pub paths: Vec<CrackPath>,
+    pub face_loads: Vec<CrackFaceLoad>,
+    /// Whether any pressure on their faces differs from zero.
+    pub acts: bool,
+}
+
 /// All cracks that are sound.
-pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Report) -> Vec<CrackPath> {
+pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Report) -> Cracks {
+    let mut loads = vec![];
+    let mut acts = false;
     let size = domain.aabb().size().norm();
     let mut paths: Vec<(usize, CrackPath)> = vec![];
     let mut names: Vec<String> = vec![];
@@ -30,14 +43,30 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
             report.error(format!("{key}.name"), format!("there is already a crack named `{name}`"));
         }
         names.push(name.clone());
-        let Some((vertices, key)) = vertices(crack, &key, domain, report) else { continue };
+        let shape = vertices(crack, &key, domain, report);
+        let points = shape.as_ref().map_or(&[][..], |s| &s.0);
+        let pressure =
+            crack.pressure.as_ref().and_then(|p| try_pressure(p, &format!("{key}.pressure"), points, report));
+        let Some((vertices, key)) = shape else { continue };
         let mut builder = Builder { domain, size, key, vertices, ends: [EndKind::Tip; 2] };
         if builder.is_simple(report) && builder.place_ends(report) && builder.is_inside(report) {
+            if let Some(pressure) = pressure.filter(|p| !matches!(p.field, ScalarField::Constant(0.0))) {
+                acts |= pressure.largest > 0.0;
+                loads.push(CrackFaceLoad { crack: paths.len(), pressure: pressure.field });
+            }
             paths.push((index, CrackPath { name, vertices: builder.vertices, ends: builder.ends }));
         }
     }
     check_apart(&paths, size, report);
-    paths.into_iter().map(|p| p.1).collect()
+    Cracks { paths: paths.into_iter().map(|p| p.1).collect(), face_loads: loads, acts }
+}
+
+/// A pressure that is finite along a path.
+fn try_pressure(pressure: &schema::Scalar, key: &str, path: &[Vector2], report: &mut Report) -> Option<Tried> {
+    let along = path
+        .windows(2)
+        .flat_map(|w| (0..=PRESSURE_SAMPLES).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / PRESSURE_SAMPLES as f64)));
+    try_field(pressure, key, along.map(|position| FieldPoint { position, normal: Vector2::zeros() }), report)
 }
 
 fn vertices(crack: &schema::Crack, key: &str, domain: &Domain, report: &mut Report) -> Option<(Vec<Vector2>, String)> {

@@ -46,6 +46,9 @@ pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem
     let domain = domain(&file, folder, &mut report)?;
     settings::check_layout(&mut settings, &file, &domain, &mut report);
     let cracks = cracks::cracks(&file.crack, &domain, &mut report);
+    if let Some(contact) = &file.contact {
+        report.positive("contact.penalty", contact.penalty);
+    }
     let mut setting = Setting { domain, material, exact, file: &file };
     let loads = loads::loads(&setting, &mut report);
     let supports = supports::supports(&mut setting, &mut report);
@@ -53,10 +56,10 @@ pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem
     let sound = |keys: &[&str]| keys.iter().all(|key| !faulty.contains(*key)) && report.problems.is_empty();
     if sound(&[]) {
         supports::check_held(&setting, &supports, &mut report);
-        if !loads.acts && !supports.acts {
+        if !loads.acts && !supports.acts && !cracks.acts {
             let mut problem = Problem::new("load", "nothing loads the body");
             problem
-                .suggest("add a [[load]], [remote_stress], [[point_load]], [body_force] or a prescribed displacement");
+                .suggest("add a [[load]], [remote_stress], [[point_load]], [body_force], a prescribed displacement or a pressure in a crack");
             report.problems.push(problem);
         }
     }
@@ -69,7 +72,9 @@ pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem
         },
         domain: setting.domain,
         material,
-        cracks,
+        cracks: cracks.paths,
+        crack_face_loads: cracks.face_loads,
+        contact: file.contact,
         loads: loads.boundary,
         body_force: loads.body_force,
         point_loads: loads.points,

@@ -1,6 +1,6 @@
 //! Outline, holes, parts and cracks.
 
-use super::Point;
+use super::{Point, Scalar};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -144,6 +144,9 @@ pub(in crate::case) struct Crack {
     /// A circular arc.
     #[serde(default)]
     pub arc: Option<CrackArc>,
+    /// Pressure on both faces [stress]; positive pushes them apart. In expressions nx and ny are zero.
+    #[serde(default)]
+    pub pressure: Option<Scalar>,
 }
 
 /// A circular crack, turned into a polyline.

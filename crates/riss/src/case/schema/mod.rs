@@ -11,6 +11,7 @@ use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
 use crate::material::PlaneState;
+use crate::model::Contact;
 use crate::nodes::settings::{Graded, Listed, Star, Structured};
 use crate::system::{ConstraintMethod, LinearSolver};
 use schemars::JsonSchema;
@@ -46,6 +47,9 @@ pub(in crate::case) struct CaseFile {
     #[serde(default)]
     #[schemars(length(max = 1000))]
     pub crack: Vec<Crack>,
+    /// Contact of crack faces without friction; without this section they may overlap.
+    #[serde(default)]
+    pub contact: Option<Contact>,
     /// Tractions on parts of the boundary.
     #[serde(default)]
     #[schemars(length(max = 1000))]
