@@ -7,7 +7,7 @@ const TASKS: &str = "usage: cargo xtask <task>
 
   ci      everything that continuous integration runs: format, clippy, tests, documentation
   tidy    layers, headers, citations, names, file length, case folders
-  verify  runs every case and compares it with its reference values; writes a table
+  verify  runs every case and compares it with its reference values; writes a table; grows random plates
   docs    writes the generated page of the book, and builds the book where mdbook is installed
   bench   runs the benchmarks; further words go to `cargo bench`";
 

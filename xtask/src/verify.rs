@@ -1,13 +1,19 @@
-//! `cargo xtask verify`: every case against its reference values, as a table.
+//! `cargo xtask verify`: every case against its reference values, as a table; and two hundred random plates.
 
 use crate::expected::{CaseRun, Comparison, Expected, run_case};
-use crate::{Outcome, build_riss, case_folders, root, target_dir};
+use crate::{Outcome, build_riss, cargo, case_folders, root, run as run_command, target_dir};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Runs all cases, or those whose folder name holds one of `names`; prints the table and writes it to
+/// What the random plates are called among the cases.
+const RANDOM_PLATES: &str = "random-plates";
+/// How many of them are grown to the end.
+const N_RANDOM_PLATES: &str = "200";
+
+/// Runs all cases and the random plates, or those whose name holds one of `names`; prints the table and writes it to
 /// `target/verify/verification.md`.
 pub fn run(names: &[String]) -> Outcome {
+    let is_asked = |case: &str| names.is_empty() || names.iter().any(|n| case.contains(n.as_str()));
     let riss = build_riss()?;
     let folder_of_runs = target_dir().join("verify");
     let mut table = String::from(
@@ -19,7 +25,7 @@ pub fn run(names: &[String]) -> Outcome {
     print!("{table}");
     for folder in case_folders(&root()) {
         let case = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if !names.is_empty() && !names.iter().any(|n| case.contains(n.as_str())) {
+        if !is_asked(&case) {
             continue;
         }
         n_cases += 1;
@@ -40,11 +46,22 @@ pub fn run(names: &[String]) -> Outcome {
     let path = folder_of_runs.join("verification.md");
     write_table(&path, &table)?;
     println!("\nwrote {}", path.display());
+    if is_asked(RANDOM_PLATES) {
+        n_cases += 1;
+        failures.extend(random_plates().err());
+    }
     match (n_cases, failures.len()) {
         (0, _) => Err("no case was run".into()),
         (_, 0) => Ok(()),
         (_, n) => Err(format!("{n} failures\n{}", failures.join("\n"))),
     }
+}
+
+/// Grows random cracks in random plates until nothing grows; the test says what went wrong.
+fn random_plates() -> Outcome {
+    println!("growing {N_RANDOM_PLATES} random plates to the end");
+    let test = ["test", "--release", "--package", "riss", "--test", "growth", "random_plates", "--", "--nocapture"];
+    run_command(cargo(&test).env("RISS_PLATES", N_RANDOM_PLATES)).map_err(|reason| format!("{RANDOM_PLATES}: {reason}"))
 }
 
 /// What does not fit, in one line.

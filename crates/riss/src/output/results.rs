@@ -73,8 +73,8 @@ pub struct StepResults {
     pub cycles: Option<f64>,
     /// Whether the load must rise for the crack to go on, in quasi-static growth.
     pub stability: Option<Stability>,
-    /// Number of nodes.
-    pub nodes: usize,
+    /// Number of nodes; null in a step that could not be solved.
+    pub nodes: Option<usize>,
     /// Strain energy over the thickness [stress·length³].
     pub strain_energy: Option<f64>,
     /// Time of each stage [s].
@@ -192,7 +192,7 @@ impl StepResults {
             load_factor: finite(step.load_factor),
             cycles: step.cycles.and_then(finite),
             stability: step.stability,
-            nodes: result.n_nodes,
+            nodes: (result.n_nodes > 0).then_some(result.n_nodes),
             strain_energy: finite(result.strain_energy),
             stage_time_s: sum_by_stage(stage_time_s),
             warnings: result.warnings.iter().map(|w| w.message.clone()).collect(),

@@ -17,6 +17,10 @@ const MAX_CORRECTIONS: usize = 4;
 /// A corrected increment is good if the criterion turns the new tip by less than this [rad].
 const GOOD_TURN: f64 = 2e-3;
 
+/// A curved increment that meets a wall is cut if it is longer than this part of a whole one: where it would have
+/// turned to there is no tip that tells, and paths bend most close to holes.
+const LONG_ARRIVAL: f64 = 0.25;
+
 /// A step whose path error is this part of the tolerance may be followed by one twice as long.
 const LONGER: f64 = 0.25;
 
@@ -62,6 +66,12 @@ pub(super) fn grow(
         .collect();
     let mut scale = state.scale;
     let mut grown = make(model, plan, &shapes, 1.0);
+    let mut share = 1.0;
+    while is_curved && arrives_far(plan, &grown) {
+        shapes.iter_mut().for_each(|s| s.length *= 0.5);
+        share *= 0.5;
+        grown = make(model, plan, &shapes, share);
+    }
     let corrects = is_curved || growth.criterion == GrowthCriterion::LocalSymmetry;
     let tolerance = match growth.control {
         IncrementControl::Converged { tolerance } => Some(tolerance),
@@ -91,6 +101,7 @@ pub(super) fn grow(
         } else if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) > t) && scale > LEAST_SCALE {
             shapes.iter_mut().for_each(|s| s.length *= 0.5);
             scale *= 0.5;
+            share *= 0.5;
             corrections = 0;
         } else {
             if tolerance.is_some_and(|t| path_error(&shapes, &turns, is_curved) < LONGER * t) {
@@ -99,8 +110,18 @@ pub(super) fn grow(
             grown.result = Some(result);
             return (grown, scale);
         }
-        grown = make(model, plan, &shapes, scale / state.scale);
+        grown = make(model, plan, &shapes, share);
     }
+}
+
+/// Whether an increment meets a wall after a long way.
+fn arrives_far(plan: &StepPlan, grown: &Grown) -> bool {
+    let longest = plan.tips.iter().map(|t| t.length).fold(0.0, f64::max);
+    let is_far = |(ending, (_, length)): (&Ending, &(f64, f64))| match ending {
+        Ending::Free => false,
+        Ending::Boundary(_) | Ending::Crack(_) => *length > LONG_ARRIVAL * longest,
+    };
+    grown.endings.iter().zip(&grown.made).any(is_far)
 }
 
 /// Distance between the ends of one increment and of two of half the length, over the length.
