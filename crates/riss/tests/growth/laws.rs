@@ -1,14 +1,14 @@
 //! Laws of growth against closed forms: load factors, lives, thresholds, limits.
 
 use crate::bodies::{body, crack, rectangle};
-use crate::steps::grow;
+use crate::steps::{Steps, grow};
 use riss::analysis::crack_growth::settings::{AdvanceLaw, Fatigue, QuasiStatic, StopSettings};
 use riss::analysis::{GrowthEndKind, GrowthSettings, Settings, Stability, TipStatus};
 use riss::crack::EndKind::{Mouth, Tip};
-use riss::fracture::fatigue::{GrowthLaw, LoadSpectrum};
+use riss::fracture::fatigue::{GrowthLaw, LoadSpectrum, Nasgro, Rate};
 use riss::material::PlaneState;
-use riss::math::Matrix2;
-use riss::model::{BoundaryLoad, Model, RigidMotion, TractionValue};
+use riss::math::{Matrix2, Vector2};
+use riss::model::{BoundaryLoad, Model, PointSupport, RigidMotion, TractionValue};
 use std::f64::consts::PI;
 
 const HALF_WIDTH: f64 = 5.0;
@@ -93,6 +93,57 @@ fn below_the_threshold_nothing_grows_and_at_the_toughness_it_ends() {
     let brittle = GrowthSettings { increment: Some(0.2), law, ..GrowthSettings::default() };
     let (steps, end) = grow(&center_crack(), &Settings::default(), &brittle);
     assert_eq!((steps.records.len(), end.kind), (4, GrowthEndKind::ToughnessReached));
+}
+
+/// Arms of a double cantilever beam held apart: K falls as 1/a², and passes the threshold within an increment.
+#[test]
+fn where_the_factor_falls_growth_ends_at_the_threshold_or_never_gets_there() {
+    let mut model = body(rectangle((0.0, -1.0), (20.0, 1.0)), PlaneState::Strain);
+    model.cracks.push(crack(&[(0.0, 0.0), (6.0, 0.0)], [Mouth, Tip]));
+    for y in [-1.0, 1.0] {
+        model.point_supports.push(PointSupport { at: Vector2::new(0.0, y), displacement: [None, Some(1e-3 * y)] });
+    }
+    model.point_supports.push(PointSupport { at: Vector2::new(20.0, 0.0), displacement: [Some(0.0); 2] });
+    let run = |law| {
+        let growth = GrowthSettings { increment: Some(0.5), law, ..GrowthSettings::default() };
+        grow(&model, &Settings::default(), &growth)
+    };
+    let free = run(paris(1.0, 2.0, None, None)).0;
+    let k: Vec<f64> = (0..4).map(|step| free.tip(step, 0).k_equivalent.expect("evaluated")).collect();
+    assert!(k.windows(2).all(|w| w[1] < w[0]), "{k:?}");
+    // In the middle of the third increment.
+    let threshold = 0.5 * (k[2] + k[3]);
+    let (cut, end) = run(paris(1.0, 2.0, Some(threshold), None));
+    assert_eq!(end.kind, GrowthEndKind::NoTipGrows);
+    assert_eq!(cut.records.len(), 4);
+    assert_eq!(cut.tip(3, 0).status, TipStatus::Arrested);
+    let cycles = |steps: &Steps, step: usize| steps.records[step].cycles.expect("fatigue counts");
+    // The same rate as without a threshold as far as it goes.
+    let (whole, part) = (cycles(&free, 3) - cycles(&free, 2), cycles(&cut, 3) - cycles(&cut, 2));
+    assert!(part > 0.4 * whole && part < 0.6 * whole, "{part} of {whole}");
+    // A rate that vanishes linearly at the threshold never brings the tip there.
+    let nasgro = |threshold: f64| {
+        let (coefficient, exponent, p, q, toughness) = (1.0, 2.0, 1.0, 0.0, 100.0 * k[0]);
+        let (threshold_spread, negative_threshold_spread, alpha, stress_level) = (0.0, 0.0, 2.0, 0.3);
+        GrowthLaw::Nasgro(Nasgro {
+            coefficient,
+            exponent,
+            p,
+            q,
+            toughness,
+            threshold,
+            threshold_spread,
+            negative_threshold_spread,
+            alpha,
+            stress_level,
+        })
+    };
+    let ends_there = |law: &GrowthLaw| law.rate(0.0, k[2]) != Rate::Arrested && law.rate(0.0, k[3]) == Rate::Arrested;
+    let rate = (0..100).map(|i| nasgro(k[3] * 0.02 * i as f64)).find(ends_there).expect("a threshold between");
+    let (crept, end) = run(AdvanceLaw::Fatigue(Fatigue { rate, spectrum: LoadSpectrum::default() }));
+    assert_eq!((crept.records.len(), end.kind), (4, GrowthEndKind::NoTipGrows));
+    assert!(end.reason.contains("creeps towards its threshold"), "{}", end.reason);
+    assert!(crept.records[3].cycles.is_some_and(f64::is_finite));
 }
 
 #[test]
