@@ -7,6 +7,7 @@ pub mod bench;
 pub mod ci;
 pub mod docs;
 pub mod expected;
+pub mod python;
 pub mod reference;
 pub mod tidy;
 pub mod verify;

@@ -1,14 +1,15 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
-use xtask::{bench, ci, docs, tidy, verify};
+use xtask::{bench, ci, docs, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
 
-  ci      everything that continuous integration runs: format, clippy, tests, documentation
+  ci      everything that continuous integration runs: format, clippy, tests, documentation, Python
   tidy    layers, headers, citations, names, file length, case folders
   verify  runs every case and compares it with its reference values; writes a table; grows random plates
   docs    writes the generated page of the book, and builds the book where mdbook is installed
+  python  builds the Python package and tests it, in an environment under `target`
   bench   runs the benchmarks; further words go to `cargo bench`";
 
 fn main() -> ExitCode {
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
         ("verify", names) => verify::run(names),
         ("docs", []) => docs::run(),
         ("bench", rest) => bench::run(rest),
+        ("python", []) => python::test(),
         _ => Err(TASKS.into()),
     };
     match outcome {

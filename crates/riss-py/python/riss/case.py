@@ -1,0 +1,166 @@
+"""Cases: what is to be analyzed."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any, Callable, Mapping, Optional, Union
+
+from . import _riss
+from .progress import Progress
+from .results import Run, State, Step
+
+StepCallback = Callable[[Step], Union[None, bool, "Case"]]
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of the case file."""
+    return json.loads(_riss.schema())
+
+
+class Case:
+    """A valid case.
+
+    ``Case(**sections)`` takes the sections of a case file as keywords: dicts for tables, lists of dicts for ``crack``,
+    ``load``, ``support`` and the like. NumPy arrays and numbers are welcome. Files that it names are sought in
+    ``folder``.
+
+    Raises :class:`CaseError` with all problems at once.
+    """
+
+    def __init__(self, *, folder: Union[str, os.PathLike[str]] = ".", **sections: Any) -> None:
+        text = json.dumps(sections, default=_plain)
+        self._case = _riss.Case.from_json(text, Path(folder) / "case.toml")
+
+    @classmethod
+    def read(cls, path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = None) -> Case:
+        """The case in a file; ``set`` overrides keys, such as ``{"material.young": 70e9}``."""
+        return cls._of(_riss.Case.read(Path(path), _overrides(set)))
+
+    @classmethod
+    def parse(
+        cls, text: str, path: Union[str, os.PathLike[str]] = "case.toml", set: Optional[Mapping[str, Any]] = None
+    ) -> Case:
+        """The case in a text; files that it names are sought beside ``path``."""
+        return cls._of(_riss.Case.parse(text, Path(path), _overrides(set)))
+
+    @classmethod
+    def _of(cls, case: _riss.Case) -> Case:
+        self = cls.__new__(cls)
+        self._case = case
+        return self
+
+    def override(self, set: Mapping[str, Any]) -> Case:
+        """The same case with other values of some keys, such as ``{"growth.increment": 0.5}``."""
+        overrides = self._case.overrides + _overrides(set)
+        return self._of(_riss.Case.parse(self._case.text, self._case.path, overrides))
+
+    @property
+    def title(self) -> str:
+        """Its title, or its name."""
+        return self._case.title
+
+    @property
+    def text(self) -> str:
+        """The text of the case file."""
+        return self._case.text
+
+    @property
+    def notes(self) -> list[str]:
+        """What is worth knowing, although the case is valid."""
+        return self._case.notes
+
+    def __repr__(self) -> str:
+        return f"<riss.Case {self.title!r}>"
+
+    def run(
+        self,
+        *,
+        out: Union[None, str, os.PathLike[str]] = None,
+        on_step: Optional[StepCallback] = None,
+        progress: Optional[bool] = None,
+        start: Optional[State] = None,
+        threads: Optional[int] = None,
+    ) -> Run:
+        """Runs the case to its end.
+
+        ``out``: a folder for the files that ``riss run`` writes; none are written by default.
+
+        ``on_step``: called with each :class:`Step` when it is done. ``False`` ends the run there. A :class:`Case` takes
+        over from the next step on: its loads, materials and settings, with the cracks as they have grown. Anything else
+        goes on.
+
+        ``progress``: a progress bar; by default where a terminal or a notebook shows it.
+
+        ``start``: a state to go on from, such as ``step.state``, with that step solved again.
+
+        ``threads``: their number, by default all cores. Results do not depend on it.
+
+        Ctrl-C ends the run after the step at hand; what was written is complete. A second one does not wait.
+
+        Raises :class:`AnalysisError` if the first step cannot be solved. A later one that cannot ends the growth, and
+        ``Run.end`` says why.
+        """
+        run = Run()
+        case: Optional[Case] = self
+        while case is not None:
+            relay = _Relay(run, on_step)
+            with Progress(case, progress) as shown:
+
+                def done(step: _riss.Step) -> bool:
+                    goes_on = relay.step(Step(step))
+                    shown.step()
+                    return goes_on
+
+                state = None if start is None else start._state
+                folder = None if out is None else Path(out)
+                _riss.run(case._case, state, folder, threads, shown.stage, run.warnings.append, done)
+            case, start = relay.successor, relay.state
+        return run
+
+
+class _Relay:
+    """Keeps steps, and what the callback wants."""
+
+    def __init__(self, run: Run, on_step: Optional[StepCallback]) -> None:
+        self.run = run
+        self.on_step = on_step
+        self.wanted: Optional[Case] = None
+        self.successor: Optional[Case] = None
+        self.state: Optional[State] = None
+
+    def step(self, step: Step) -> bool:
+        if self.wanted is not None:
+            # The step after the change: its cracks stand, all else is for the other case to find.
+            self.successor, self.state = self.wanted, step.state
+            return False
+        self.run.steps.append(step)
+        answer = self.on_step(step) if self.on_step is not None else None
+        if isinstance(answer, Case):
+            self.wanted = answer
+        return answer is not False
+
+
+def _overrides(set: Optional[Mapping[str, Any]]) -> list[str]:
+    return [f"{key}={_inline(value)}" for key, value in (set or {}).items()]
+
+
+def _inline(value: Any) -> str:
+    """A value as TOML writes it on one line; strings and numbers are as in JSON."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{json.dumps(key)} = {_inline(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    if isinstance(value, (str, bool, int, float)):
+        return json.dumps(value, ensure_ascii=False)
+    return _inline(_plain(value))
+
+
+def _plain(value: Any) -> Any:
+    """What NumPy holds, as plain lists and numbers."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"a case cannot hold a {type(value).__name__}: {value!r}")
