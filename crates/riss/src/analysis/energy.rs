@@ -31,7 +31,7 @@ pub fn strain_energy(model: &Model, discrete: &Discretization, solution: &Soluti
         .with_min_len(32)
         .map_init(Scratch::default, |scratch, cell| {
             let mut sums = [0.0; 3];
-            cell_gradients(discrete, cell, scratch, |_, _| ())?;
+            cell_gradients(discrete, cell, scratch, None)?;
             let nodes = discrete.cell_nodes.get(cell);
             let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
             for (q, point) in points.iter().enumerate() {

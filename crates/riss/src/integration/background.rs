@@ -4,7 +4,7 @@
 //! coarse triangles of the body, which end at boundary and cracks.
 
 use super::IntegrationPoint;
-use super::cells::{EdgePoint, IntegrationCells, edge_points};
+use super::cells::{EdgePoint, IntegrationCells, edge_rule};
 use super::rules::{collapsed_rule, triangle_rule};
 use super::settings::IntegrationSettings;
 use crate::error::{Error, Result};
@@ -135,7 +135,7 @@ impl IntegrationCells {
     }
 
     fn add_outline(&mut self, corners: &[Vector2], center: Vector2, settings: &IntegrationSettings) {
-        let line = gauss_legendre(edge_points(settings));
+        let line = edge_rule(settings);
         for (p, q) in edges(corners) {
             for &(t, w) in &line {
                 let position = p * (1.0 - t) + q * t;

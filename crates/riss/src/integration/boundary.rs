@@ -1,10 +1,9 @@
 //! Integration points along the boundary of the body.
 
-use super::cells::edge_points;
+use super::cells::edge_rule;
 use super::settings::IntegrationSettings;
 use crate::geometry::aabb::Aabb;
 use crate::math::Vector2;
-use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::turn_left;
 use crate::model::{Domain, EdgeId, FieldPoint};
 use crate::nodes::Triangulation;
@@ -58,7 +57,7 @@ pub fn boundary_elements(
     domain: &Domain,
     settings: &IntegrationSettings,
 ) -> Vec<BoundaryElement> {
-    let line = gauss_legendre(edge_points(settings));
+    let line = edge_rule(settings);
     let element = |s: &crate::nodes::BoundarySegment| {
         let curve = match domain.edges[s.edge] {
             arc @ crate::geometry::curve::Curve::Arc { .. } => arc.piece(s.range[0], s.range[1]),

@@ -3,7 +3,7 @@
 
 use super::IntegrationPoint;
 use super::rules::{collapsed_rule, triangle_rule};
-use super::settings::IntegrationSettings;
+use super::settings::{IntegrationSettings, Scheme};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::curve::Curve;
 use crate::math::gauss_legendre::gauss_legendre;
@@ -38,6 +38,18 @@ pub struct IntegrationCells {
     pub edge_ranges: Vec<Range<u32>>,
     /// Corners of each cell, for pictures.
     pub corners: Vec<Vec<Vector2>>,
+    /// Where gradients are means over parts of cells, one part a point.
+    pub smoothing: Option<Smoothing>,
+}
+
+/// Gradients that are means over parts of cells.
+#[derive(Clone, Debug, Default)]
+pub struct Smoothing {
+    /// For each outline point the points of its cell whose parts it lies between: it points out of the first, into the
+    /// second if there is one.
+    pub between: Vec<[Option<u32>; 2]>,
+    /// Part of the difference to the mean of the cell that is kept: the root of the stabilization.
+    pub share: f64,
 }
 
 impl IntegrationCells {
@@ -120,18 +132,6 @@ impl<'a> Builder<'a> {
         tips: &[Vector2],
         settings: &IntegrationSettings,
     ) -> Self {
-        let arcs = triangulation
-            .boundary
-            .iter()
-            .filter(|s| matches!(domain.edges[s.edge], Curve::Arc { .. }))
-            .map(|s| (s.points, domain.edges[s.edge].piece(s.range[0], s.range[1])))
-            .collect();
-        let mut left_of = FxHashMap::default();
-        for (i, t) in triangulation.triangles.iter().enumerate() {
-            for k in 0..3 {
-                left_of.insert([t[k], t[(k + 1) % 3]], i as u32);
-            }
-        }
         let is_tip = triangulation
             .copies
             .iter()
@@ -139,12 +139,12 @@ impl<'a> Builder<'a> {
             .collect();
         Self {
             triangulation,
-            arcs,
-            left_of,
+            arcs: arcs(triangulation, domain),
+            left_of: left_of(triangulation),
             is_tip,
             regular: triangle_rule(settings.points),
             at_tip: collapsed_rule(settings.tip_points),
-            line: gauss_legendre(edge_points(settings)),
+            line: edge_rule(settings),
             square: settings.points,
             square_at_tip: settings.tip_points,
             cells: IntegrationCells::default(),
@@ -257,9 +257,31 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Gauss points on each edge of a cell.
-pub(super) fn edge_points(settings: &IntegrationSettings) -> usize {
-    settings.points.clamp(2, 5)
+/// Curved boundary pieces by the copies at their ends.
+pub(super) fn arcs(triangulation: &Triangulation, domain: &Domain) -> FxHashMap<[u32; 2], Curve> {
+    let curved = triangulation.boundary.iter().filter(|s| matches!(domain.edges[s.edge], Curve::Arc { .. }));
+    curved.map(|s| (s.points, domain.edges[s.edge].piece(s.range[0], s.range[1]))).collect()
+}
+
+/// The triangle to the left of each directed edge.
+pub(super) fn left_of(triangulation: &Triangulation) -> FxHashMap<[u32; 2], u32> {
+    let sides = |(i, t): (usize, &[u32; 3])| {
+        let t = *t;
+        (0..3).map(move |k| ([t[k], t[(k + 1) % 3]], i as u32))
+    };
+    triangulation.triangles.iter().enumerate().flat_map(sides).collect()
+}
+
+/// Positions and weights along an edge of the boundary or of a crack, from 0 to 1; those of cells lie there, too.
+pub(super) fn edge_rule(settings: &IntegrationSettings) -> Vec<(f64, f64)> {
+    let line = gauss_legendre(settings.points.clamp(2, 5));
+    match settings.scheme {
+        Scheme::Elements | Scheme::Cells { .. } => line,
+        // Cells of nodes meet in the middle.
+        Scheme::Nodal { .. } => {
+            [0.0, 0.5].iter().flat_map(|start| line.iter().map(move |(t, w)| (start + 0.5 * t, 0.5 * w))).collect()
+        }
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Integration points along crack faces: each sees the body from both sides.
 
-use super::cells::edge_points;
+use super::cells::edge_rule;
 use super::settings::IntegrationSettings;
 use crate::geometry::aabb::Aabb;
-use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::{Vector2, turn_left};
 use crate::model::Model;
 use crate::nodes::chains::{Chains, CrackPiece};
@@ -57,7 +56,7 @@ impl CrackFaceElement {
 
 /// Elements along every crack whose faces something acts on, in the order of cracks and paths.
 pub fn crack_face_elements(model: &Model, chains: &Chains, settings: &IntegrationSettings) -> Vec<CrackFaceElement> {
-    let line = gauss_legendre(edge_points(settings));
+    let line = edge_rule(settings);
     let mut elements: Vec<CrackFaceElement> = vec![];
     for pieces in chains.crack_pieces.chunk_by(|a, b| a.crack == b.crack) {
         if !model.loads_faces(pieces[0].crack) {

@@ -1,12 +1,13 @@
 //! Integration points: every scheme is lowered to flat lists of them.
 //!
-//! [`cells`] makes them from the triangles between the nodes, [`background`] from a grid that the boundary clips,
-//! [`boundary`] along the edges of the body, [`crack_faces`] along cracks.
+//! [`cells`] makes them from the triangles between the nodes, [`nodal`] around the nodes, [`background`] from a grid that
+//! the boundary clips, [`boundary`] along the edges of the body, [`crack_faces`] along cracks.
 
 pub mod background;
 pub mod boundary;
 pub mod cells;
 pub mod crack_faces;
+pub mod nodal;
 pub mod rules;
 pub mod settings;
 

@@ -37,6 +37,19 @@ pub enum Scheme {
         #[schemars(range(min = 0.0))]
         size: f64,
     },
+    /// Cells around the nodes; strains are means over them [Chen2001], stabilized by those of their parts [Puso2008].
+    /// Needs the gradient correction, and takes no Gauss points inside the body.
+    Nodal {
+        /// Weight of the difference between the strain of a part and that of its cell, from 0 (as in the first paper) to 1
+        /// (the parts stand for themselves).
+        #[serde(default = "full_stabilization")]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        stabilization: f64,
+    },
+}
+
+fn full_stabilization() -> f64 {
+    1.0
 }
 
 /// Correction of shape function gradients at integration points [Duan2012].

@@ -111,8 +111,11 @@ impl Discretization {
                 IntegrationCells::elements(&triangulation, &model.domain, &tips, grid_step.is_some(), integration)
             }
             Scheme::Cells { size } => IntegrationCells::background(model, &triangulation, &tips, size, integration)?,
+            Scheme::Nodal { stabilization } => {
+                IntegrationCells::nodal(&triangulation, &model.domain, stabilization, integration)
+            }
         };
-        if integration.gradient_correction == GradientCorrection::None {
+        if integration.gradient_correction == GradientCorrection::None && cells.smoothing.is_none() {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);

@@ -9,7 +9,7 @@ use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{ShapeFunctions, Surroundings};
 use crate::error::Result;
 use crate::integration::IntegrationPoint;
-use crate::integration::cells::as_usize;
+use crate::integration::cells::{Smoothing, as_usize};
 use crate::math::{Matrix2, Vector2};
 use crate::model::{FieldPoint, Model};
 use rayon::prelude::*;
@@ -86,13 +86,15 @@ impl LinearSystem {
     }
 }
 
-/// Shape function gradients at all points of one cell, corrected, into `scratch`; `visit(point, shape functions)` sees
-/// the plain ones.
+/// Sees a point of a cell and the shape functions there, without corrections.
+pub type Visitor<'a> = &'a mut dyn FnMut(&IntegrationPoint<2>, &ShapeFunctions<2>);
+
+/// Shape function gradients at all points of one cell, corrected or smoothed, into `scratch`.
 pub fn cell_gradients(
     discrete: &Discretization,
     cell: usize,
     scratch: &mut Scratch,
-    mut visit: impl FnMut(&IntegrationPoint<2>, &ShapeFunctions<2>),
+    mut visit: Option<Visitor>,
 ) -> Result<()> {
     let nodes = discrete.cell_nodes.get(cell);
     let n = nodes.len();
@@ -103,16 +105,66 @@ pub fn cell_gradients(
         g.clear();
         g.resize(n * points.len(), 0.0);
     }
+    let smoothing = discrete.cells.smoothing.as_ref();
     for (q, point) in points.iter().enumerate() {
+        if smoothing.is_some() && visit.is_none() {
+            break;
+        }
         let at = point.position;
         discrete.approximation.evaluate_surveyed(at, at, Derivatives::First, around, shape)?;
+        if let Some(visit) = &mut visit {
+            visit(point, shape);
+        }
+        if smoothing.is_some() {
+            continue;
+        }
         for_each_local(nodes, &shape.neighbors, |a, k| {
             gradients[0][q * n + a] = shape.gradients[k].x;
             gradients[1][q * n + a] = shape.gradients[k].y;
         });
-        visit(point, shape);
     }
-    correct_gradients(discrete, cell, nodes, around, shape, gradients, correction)
+    match smoothing {
+        Some(smoothing) => smooth_gradients(discrete, smoothing, cell, around, shape, gradients),
+        None => correct_gradients(discrete, cell, nodes, around, shape, gradients, correction),
+    }
+}
+
+/// Makes the gradients at each point the mean over its part, `∮ φ n / A` [Chen2001], drawn towards the mean over the cell
+/// where the stabilization is less than one [Puso2008].
+fn smooth_gradients(
+    discrete: &Discretization,
+    smoothing: &Smoothing,
+    cell: usize,
+    around: &mut Surroundings,
+    shape: &mut ShapeFunctions<2>,
+    gradients: &mut [Vec<f64>; 2],
+) -> Result<()> {
+    let (cells, nodes) = (&discrete.cells, discrete.cell_nodes.get(cell));
+    let points = &cells.points[as_usize(&cells.point_ranges[cell])];
+    let outline = as_usize(&cells.edge_ranges[cell]);
+    let n = nodes.len();
+    for (point, between) in cells.edge_points[outline.clone()].iter().zip(&smoothing.between[outline]) {
+        discrete.approximation.evaluate_surveyed(point.position, point.sight, Derivatives::First, around, shape)?;
+        for (part, normal) in between.iter().zip([point.normal, -point.normal]) {
+            let Some(part) = part else { continue };
+            let start = *part as usize * n;
+            for_each_local(nodes, &shape.neighbors, |a, k| {
+                gradients[0][start + a] += shape.values[k] * normal.x;
+                gradients[1][start + a] += shape.values[k] * normal.y;
+            });
+        }
+    }
+    let area: f64 = points.iter().map(|p| p.weight).sum();
+    for g in gradients {
+        for a in 0..n {
+            let mean = (0..points.len()).map(|q| g[q * n + a]).sum::<f64>() / area;
+            for (q, point) in points.iter().enumerate() {
+                let own = g[q * n + a] / point.weight;
+                g[q * n + a] = mean + smoothing.share * (own - mean);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Displacement gradient at point `q` of a cell whose gradients are in `scratch`.
@@ -135,7 +187,7 @@ fn cell_matrix(
     let n = nodes.len();
     local.reset(nodes);
     let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
-    cell_gradients(discrete, cell, scratch, |point, shape| {
+    let mut add_body_force = |point: &IntegrationPoint<2>, shape: &ShapeFunctions<2>| {
         let Some(body) = &model.body_force else { return };
         let at = FieldPoint { position: point.position, normal: Vector2::zeros() };
         let force = Vector2::new(body.0[0].value(&at), body.0[1].value(&at)) * point.weight;
@@ -143,7 +195,9 @@ fn cell_matrix(
             local.load[2 * a] += shape.values[k] * force.x;
             local.load[2 * a + 1] += shape.values[k] * force.y;
         });
-    })?;
+    };
+    let visitor = model.body_force.as_ref().map(|_| &mut add_body_force as Visitor);
+    cell_gradients(discrete, cell, scratch, visitor)?;
     let Scratch { gradients, products, .. } = scratch;
     for (k, product) in products.iter_mut().enumerate() {
         product.clear();

@@ -4,4 +4,5 @@ mod bar;
 #[path = "../bodies/mod.rs"]
 mod bodies;
 mod cantilever;
+mod nodal_integration;
 mod plate_with_hole;

@@ -5,6 +5,7 @@ mod bodies;
 mod constraint_methods;
 mod free_motion;
 mod loads;
+mod nodal_integration;
 mod patch;
 mod round_bodies;
 mod supports;

@@ -5,7 +5,7 @@ use super::report::Report;
 use crate::analysis::Settings;
 use crate::approximation::settings::Basis;
 use crate::case::schema::{self, CaseFile, NodeFile};
-use crate::integration::settings::Scheme;
+use crate::integration::settings::{GradientCorrection, Scheme};
 use crate::model::Domain;
 use crate::nodes::generation::MAX_NODES;
 use crate::nodes::settings::{Graded, Layout, Listed, NodeSettings, Star};
@@ -25,6 +25,12 @@ pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> S
     check_approximation(file, report);
     if let Scheme::Cells { size } = file.integration.scheme {
         report.positive("integration.scheme.cells.size", size);
+    }
+    if matches!(file.integration.scheme, Scheme::Nodal { .. })
+        && file.integration.gradient_correction == GradientCorrection::None
+    {
+        let message = "nodal integration takes means of the gradients, which need no correction and know none";
+        report.error("integration.gradient_correction", message).suggest("leave it out");
     }
     match file.constraints {
         ConstraintMethod::Nitsche { factor } => report.positive("constraints.nitsche.factor", factor),
