@@ -1,6 +1,6 @@
 //! Everything discrete about a body, read-only once built: nodes, supports, cells, neighbor lists.
 
-use crate::approximation::discontinuity::visibility_obstacles;
+use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
 use crate::approximation::moving_least_squares::{Derivatives, support_radii};
 use crate::approximation::{ApproximationSettings, MovingLeastSquares, SpacingFrom, Surroundings};
 use crate::error::{Error, Result};
@@ -101,6 +101,7 @@ impl Discretization {
         let Layered { chains, triangulation, grid_step } = layered;
         let (mut nodes, node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let obstacles = visibility_obstacles(model, &triangulation);
+        let barriers = barriers(model, &triangulation, &approximation.smoothing);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
         let tips: Vec<Vector2> = model.tips().iter().map(|t| t.1.position).collect();
         let mut cells = match integration.scheme {
@@ -113,7 +114,7 @@ impl Discretization {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
-        let (approximation, lists) = safeguard(nodes, obstacles, *approximation, &cells, &boundary)?;
+        let (approximation, lists) = safeguard(nodes, obstacles, &barriers, *approximation, &cells, &boundary)?;
         let (of_cells, of_boundary) = lists.split_at(cells.len());
         let (cell_nodes, boundary_nodes) = (NodeLists::from_lists(of_cells), NodeLists::from_lists(of_boundary));
         Ok(Self { approximation, triangulation, node_of_copy, cells, boundary, cell_nodes, boundary_nodes })
@@ -257,6 +258,7 @@ fn set_supports(
 fn safeguard(
     mut nodes: Nodes<2>,
     obstacles: Obstacles,
+    barriers: &Barriers,
     settings: ApproximationSettings,
     cells: &IntegrationCells,
     boundary: &[BoundaryElement],
@@ -265,7 +267,7 @@ fn safeguard(
     let mut suspects = all.clone();
     let tree = BoxTree::of_points(&nodes.positions);
     for round in 0..=SUPPORT_ROUNDS {
-        let approximation = MovingLeastSquares::new(nodes, obstacles.clone(), settings);
+        let approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings);
         let found = inspect_all(&approximation, cells, boundary, &suspects);
         let poor = || found.iter().flat_map(|i| &i.poor);
         // Poor but not singular is taken after the last round.
