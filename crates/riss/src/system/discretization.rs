@@ -2,7 +2,7 @@
 
 use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
 use crate::approximation::moving_least_squares::{Derivatives, support_radii};
-use crate::approximation::{ApproximationSettings, MovingLeastSquares, SpacingFrom, Surroundings};
+use crate::approximation::{ApproximationSettings, CrackSmoothing, MovingLeastSquares, SpacingFrom, Surroundings};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
@@ -99,10 +99,14 @@ impl Discretization {
         integration: &IntegrationSettings,
     ) -> Result<Self> {
         let Layered { chains, triangulation, grid_step } = layered;
-        let (mut nodes, node_of_copy) = nodes_of(&triangulation, &chains.is_node);
+        let (mut nodes, mut node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let obstacles = visibility_obstacles(model, &triangulation);
-        let barriers = barriers(model, &triangulation, &approximation.smoothing);
+        let smoothing = approximation.resolved_smoothing();
+        let barriers = barriers(model, &triangulation, &smoothing);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
+        if smoothing.cracks() == CrackSmoothing::SeeThrough {
+            join_sides(&mut nodes, &mut node_of_copy, &barriers, approximation);
+        }
         let tips: Vec<Vector2> = model.tips().iter().map(|t| t.1.position).collect();
         let mut cells = match integration.scheme {
             Scheme::Elements => {
@@ -251,6 +255,40 @@ fn set_supports(
     let dilation = settings.dilation(grid_step.is_some());
     let spacings = neighbor_distances(nodes, obstacles, &guess, k, step);
     nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, dilation, *c)).collect();
+}
+
+/// Makes nodes one that stand at the same place and see each other through a crack: their functions would be the same.
+fn join_sides(
+    nodes: &mut Nodes<2>,
+    node_of_copy: &mut [Option<u32>],
+    barriers: &Barriers,
+    settings: &ApproximationSettings,
+) {
+    let approximation = MovingLeastSquares::new(nodes.clone(), barriers.clone(), *settings);
+    let mut around = Surroundings::default();
+    let mut kept = Nodes::default();
+    let mut new_index: Vec<u32> = vec![];
+    // Nodes at one place follow each other.
+    for i in 0..nodes.len() {
+        let (at, sight) = (nodes.positions[i], nodes.sights[i]);
+        let before = (0..i).rev().take_while(|j| nodes.positions[*j] == at).collect::<Vec<_>>();
+        if !before.is_empty() {
+            approximation.survey(&Aabb::of_points([at, sight]), &mut around);
+            approximation.gather(at, sight, Derivatives::First, &mut around);
+        }
+        let twin = before.into_iter().find(|j| around.near.nodes.contains(&(*j as u32)));
+        new_index.push(match twin {
+            Some(j) => new_index[j],
+            None => {
+                kept.positions.push(at);
+                kept.sights.push(sight);
+                kept.support_radii.push(nodes.support_radii[i]);
+                kept.positions.len() as u32 - 1
+            }
+        });
+    }
+    node_of_copy.iter_mut().flatten().for_each(|node| *node = new_index[*node as usize]);
+    *nodes = kept;
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
