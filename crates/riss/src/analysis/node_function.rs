@@ -9,7 +9,7 @@ use crate::system::Discretization;
 use rustc_hash::FxHashMap;
 
 /// Triangles of the body are divided into about so many in all.
-const TRIANGLES: usize = 3500;
+const TRIANGLES: usize = 3000;
 /// Half size of the picture over the support radius.
 const REACH: f64 = 1.1;
 

@@ -8,7 +8,7 @@
 //!       / \             |            \
 //! ```
 //!
-//! References: Rooke and Sneddon (1969) for the cross in an infinite plate; else an independent finite element program
+//! References: [RookeSneddon1969] for the cross in an infinite plate; else an independent finite element program
 //! (quadratic triangles with quarter-point tips, interaction integral) on three meshes with 4500 to 23000 nodes, which
 //! differ by 0.02 % of |K| at most. Tolerance: 0.5 % of |K|, what the defaults promise.
 
@@ -118,5 +118,25 @@ fn smoothing_keeps_sectors_apart() {
         settings.approximation.smoothing = SmoothingSettings { cracks: Some(cracks), holes };
         check_with(&star(3), &settings, &[[1.6789, 0.0]; 3], 0.01);
         check_with(&tee(), &settings, &[[3.0512, 0.0075], [2.9919, 0.0037], [0.68435, 0.3923]], 0.01);
+    }
+}
+
+/// Faces where cracks cross, and where one meets a hole aslant, belong to their own sector.
+#[test]
+fn faces_at_meetings_are_those_of_their_sector() {
+    let result = solve(&cross(10.0), &Settings::default());
+    let faces = &result.fields.crack_faces[0];
+    let center = faces.positions.iter().position(|p| p.norm() == 0.0).expect("a vertex");
+    // The piece to the upper left moves along its diagonal, by symmetry.
+    let (left, right) = (faces.left[center], faces.right[center]);
+    let size = left.norm();
+    assert!(left.y > 0.0 && (left.x + left.y).abs() < 0.01 * size, "{left}");
+    assert!((left.x - right.x).abs() < 0.01 * size && (left.y + right.y).abs() < 0.01 * size, "{left} {right}");
+    // 45° to the rim at (1, 0).
+    let domain = rectangle([-5.0, -5.0], [5.0, 5.0], &[[0.0, 0.0, 1.0]]);
+    let model = stretched(domain, vec![edge_crack(&[[1.0, 0.0], [2.0, 1.0]])], [0.0, 1.0]);
+    let faces = &solve(&model, &Settings::default()).fields.crack_faces[0];
+    for side in [&faces.left, &faces.right] {
+        assert!((side[0] - side[1]).norm() < 0.1 * (faces.left[0] - faces.right[0]).norm(), "{side:?}");
     }
 }
