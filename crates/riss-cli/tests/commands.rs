@@ -56,6 +56,25 @@ fn check_says_what_a_case_holds_and_draws_it() {
 }
 
 #[test]
+fn shape_draws_the_functions_of_a_node() {
+    let folder = scratch("shape");
+    let text = stdout(&folder, &["shape", &shear_case(), "--at", "3.4,8.1"]);
+    assert!(text.starts_with("node ") && text.lines().count() == 5, "{text}");
+    for line in text.lines().skip(1) {
+        let path = line.strip_prefix("wrote ").expect("a path");
+        assert!(path.contains("shear-edge-crack.riss-out") && folder.join(path).exists(), "{line}");
+    }
+    let refused = |arguments: &[&str]| {
+        let output = riss(&folder, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8(output.stderr).expect("UTF-8")
+    };
+    assert!(refused(&["shape", &shear_case(), "--node", "1000000"]).contains("there is no node 1000000"));
+    assert!(refused(&["shape", &shear_case(), "--at", "3.4"]).contains("expected two numbers, such as 3.5,8"));
+    assert!(refused(&["shape", &shear_case()]).contains("--node"));
+}
+
+#[test]
 fn run_prints_a_table_and_writes_files() {
     let folder = scratch("run");
     let text = stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet"]);

@@ -1,14 +1,22 @@
-//! Shape functions with gradients at one point, as assembly asks for them.
+//! Shape functions with gradients at one point, as assembly asks for them; neighbors near a tip with each smoothing.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use riss::analysis::{Settings, Silent, discretize};
 use riss::approximation::moving_least_squares::Derivatives;
 use riss::approximation::{
-    ApproximationSettings, Basis, MovingLeastSquares, ShapeFunctions, Surroundings, WeightFunction,
+    ApproximationSettings, Basis, CrackSmoothing, MovingLeastSquares, ShapeFunctions, SmoothingSettings, Surroundings,
+    WeightFunction,
 };
+use riss::crack::{CrackPath, EndKind};
 use riss::geometry::aabb::Aabb;
+use riss::geometry::curve::Curve;
 use riss::geometry::obstacles::Obstacles;
+use riss::integration::cells::as_usize;
 use riss::math::Vector2;
+use riss::model::{Domain, Model};
 use riss::nodes::Nodes;
+use riss::nodes::settings::{Layout, Structured};
+use riss::system::Discretization;
 use std::hint::black_box;
 
 /// A jittered grid of unit spacing; a support radius of 2.5 gives 20 neighbors on average.
@@ -55,5 +63,51 @@ fn bench(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, bench);
+/// A square with a crack to its middle, on a grid that the crack runs between.
+fn near_tip(cracks: CrackSmoothing) -> Discretization {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vector2::from);
+    let outline = (0..4).map(|k| Curve::Line { start: corners[k], end: corners[(k + 1) % 4] }).collect();
+    let mut model = Model::plain(Domain::new(outline, vec![]));
+    let vertices = vec![Vector2::new(-1.0, 0.0), Vector2::zeros()];
+    model.cracks.push(CrackPath { name: "crack".into(), vertices, ends: [EndKind::Mouth, EndKind::Tip] });
+    let mut settings = Settings::default();
+    settings.nodes.layout = Layout::Structured(Structured { nx: 40, ny: 40 });
+    settings.approximation.smoothing = SmoothingSettings { cracks: Some(cracks), holes: None };
+    discretize(&model, &settings, &mut Silent).expect("the grid is dense enough")
+}
+
+/// Neighbors and weights of the points of the 8 x 8 cells around a tip, cell by cell.
+fn bench_near_tip(c: &mut Criterion) {
+    let mut group = c.benchmark_group("gather_near_tip");
+    for (name, cracks) in [
+        ("visibility", CrackSmoothing::Visibility),
+        ("diffraction", CrackSmoothing::Diffraction { lambda: 2.0 }),
+        ("transparency", CrackSmoothing::Transparency { kappa: 0.5, lambda: 2.0 }),
+        ("see-through", CrackSmoothing::SeeThrough),
+    ] {
+        let discrete = near_tip(cracks);
+        let cells: Vec<Vec<Vector2>> = (0..discrete.cells.len())
+            .map(|i| {
+                discrete.cells.points[as_usize(&discrete.cells.point_ranges[i])].iter().map(|p| p.position).collect()
+            })
+            .filter(|points: &Vec<Vector2>| points.iter().all(|p| p.amax() < 4.0 / 19.5))
+            .collect();
+        let mut around = Surroundings::default();
+        group.throughput(Throughput::Elements(cells.iter().map(|c| c.len() as u64).sum()));
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                for cell in &cells {
+                    discrete.approximation.survey(&Aabb::of_points(cell.iter().copied()), &mut around);
+                    for &at in cell {
+                        discrete.approximation.gather(at, at, Derivatives::First, &mut around);
+                        black_box(&around.near);
+                    }
+                }
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, bench, bench_near_tip);
 criterion_main!(benches);

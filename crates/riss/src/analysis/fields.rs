@@ -3,13 +3,17 @@
 use super::record::{CrackFaces, Fields};
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{ShapeFunctions, Surroundings};
+use crate::crack::meetings::shared_vertices;
 use crate::error::Result;
-use crate::math::{Matrix2, Vector2};
+use crate::math::{Matrix2, Vector2, turn_left};
 use crate::model::Model;
 use crate::nodes::Triangulation;
 use crate::nodes::triangulation::SIGHT_SHIFT;
 use crate::system::{Discretization, Solution};
 use rayon::prelude::*;
+
+/// How far beside a path its sides see from where it meets something, over how far along it.
+const NARROW: f64 = 0.05;
 
 /// Samples every copy of the triangulation, so that both faces of cracks have their own values.
 ///
@@ -67,11 +71,13 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
 fn sample_faces(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<Vec<CrackFaces>> {
     let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
     let mut result = vec![];
+    let shared: Vec<Vector2> = shared_vertices(&model.cracks).into_iter().map(|m| m.place).collect();
     for crack in &model.cracks {
         let mut faces = CrackFaces::default();
-        for (at, left) in points_along(&discrete.triangulation, &crack.vertices) {
-            for (side, list) in [(left, &mut faces.left), (-left, &mut faces.right)] {
-                discrete.approximation.evaluate(at, at + side, Derivatives::First, &mut around, &mut shape)?;
+        let meets = |p: Vector2| shared.contains(&p) || crack.mouths().any(|m| m == p);
+        for (at, [left, right]) in points_along(&discrete.triangulation, &crack.vertices, meets) {
+            for (sight, list) in [(left, &mut faces.left), (right, &mut faces.right)] {
+                discrete.approximation.evaluate(at, sight, Derivatives::First, &mut around, &mut shape)?;
                 list.push(shape.value(&solution.parameters));
             }
             faces.positions.push(at);
@@ -81,12 +87,21 @@ fn sample_faces(model: &Model, discrete: &Discretization, solution: &Solution) -
     Ok(result)
 }
 
-/// Points of the triangulation on a path, in order, with a small step to its left; at tips the step is zero.
-fn points_along(triangulation: &Triangulation, path: &[Vector2]) -> Vec<(Vector2, Vector2)> {
+/// Points of the triangulation on a path, in order, with from where their left and right side see.
+///
+/// - `meets`: whether the path meets the boundary or another crack at a vertex
+fn points_along(
+    triangulation: &Triangulation,
+    path: &[Vector2],
+    meets: impl Fn(Vector2) -> bool,
+) -> Vec<(Vector2, [Vector2; 2])> {
+    let beside = |p: Vector2, left: Vector2| (p, [p + left, p - left]);
+    // Close to the path, for what it meets there may be slanted.
+    let along = |p: Vector2, step: Vector2, left: Vector2| (p, [p + step + left * NARROW, p + step - left * NARROW]);
     let mut found = vec![];
     for (k, w) in path.windows(2).enumerate() {
         let e = w[1] - w[0];
-        let left = crate::math::turn_left(e.normalize());
+        let left = turn_left(e.normalize());
         let mut on: Vec<(f64, Vector2)> = vec![];
         for (i, &p) in triangulation.positions.iter().enumerate() {
             let t = (p - w[0]).dot(&e) / e.norm_squared();
@@ -99,13 +114,16 @@ fn points_along(triangulation: &Triangulation, path: &[Vector2]) -> Vec<(Vector2
         on.sort_by(|a, b| a.0.total_cmp(&b.0));
         // A kink sees from both sides along its bisector, an end straight off its segment.
         let before = if k == 0 { e } else { w[0] - path[k - 1] };
-        let normal = crate::math::turn_left(before.normalize() + e.normalize()).normalize();
-        let step = SIGHT_SHIFT * e.norm().min(before.norm());
-        found.push((w[0], normal * step));
-        found.extend(on.into_iter().map(|(t, left)| (w[0] + e * t, left)));
+        let size = SIGHT_SHIFT * e.norm().min(before.norm());
+        found.push(match (meets(w[0]), k) {
+            (true, 0) => along(w[0], e.normalize() * size, left * size),
+            (true, _) => along(w[0], -before.normalize() * size, turn_left(before.normalize()) * size),
+            (false, _) => beside(w[0], turn_left(before.normalize() + e.normalize()).normalize() * size),
+        });
+        found.extend(on.into_iter().map(|(t, left)| beside(w[0] + e * t, left)));
     }
     let last = path[path.len() - 1];
-    let e = last - path[path.len() - 2];
-    found.push((last, crate::math::turn_left(e) * SIGHT_SHIFT));
+    let e = (last - path[path.len() - 2]) * SIGHT_SHIFT;
+    found.push(if meets(last) { along(last, -e, turn_left(e)) } else { beside(last, turn_left(e)) });
     found
 }

@@ -3,15 +3,22 @@
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
 //! from the [`weight_function`] of each visible neighbor and the fit in [`mls`].
 
+mod detour;
 pub mod discontinuity;
+mod fade;
 pub mod mls;
 pub mod moving_least_squares;
 pub mod settings;
+mod sight;
+mod ways;
 pub mod weight_function;
 
 use crate::math::{Matrix, Vector};
 pub use moving_least_squares::{MovingLeastSquares, Surroundings};
-pub use settings::{ApproximationSettings, Basis, SpacingFrom, SupportShape, WeightFunction};
+pub use settings::{
+    ApproximationSettings, Basis, CrackSmoothing, HoleSmoothing, SmoothingSettings, SpacingFrom, SupportShape,
+    WeightFunction,
+};
 
 /// Shape functions at one point. A buffer that is refilled, one per thread.
 #[derive(Clone, Debug, Default)]

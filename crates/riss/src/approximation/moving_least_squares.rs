@@ -1,8 +1,10 @@
-//! The moving least squares approximation over the nodes of a body in the plane, with the visibility criterion.
+//! The moving least squares approximation over the nodes of a body in the plane, around cracks and holes.
 
 use super::ShapeFunctions;
+use super::discontinuity::Barriers;
 use super::mls::{Neighborhood, fit_into, quality};
 use super::settings::{ApproximationSettings, SupportShape, WeightFunction};
+use super::sight::{Candidate, Sight, SightBuffer, View};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
@@ -24,8 +26,8 @@ pub enum Derivatives {
 pub struct Surroundings {
     /// Nodes that may reach.
     pub candidates: Vec<u32>,
-    /// Obstacles that may hide.
-    pub obstacles: Vec<u32>,
+    /// Obstacles that may hide, and ways around them.
+    sight: SightBuffer,
     /// Positions of the candidates, axis by axis.
     positions: [Vec<f64>; 2],
     /// Inverse squared support radii of the candidates, where supports are circular.
@@ -34,21 +36,21 @@ pub struct Surroundings {
     pub near: Neighborhood<2>,
 }
 
-/// Moving least squares over nodes, blind across obstacles [EFG, sections 2.1, 2.2, 4.1].
+/// Moving least squares over nodes that do not act across obstacles [EFG, sections 2.1, 2.2, 4].
 #[derive(Clone, Debug)]
 pub struct MovingLeastSquares {
     nodes: Nodes<2>,
-    obstacles: Obstacles,
+    sight: Sight,
     settings: ApproximationSettings,
     supports: BoxTree<2>,
 }
 
 impl MovingLeastSquares {
     /// Joins nodes (with supports), obstacles and settings.
-    pub fn new(nodes: Nodes<2>, obstacles: Obstacles, settings: ApproximationSettings) -> Self {
+    pub fn new(nodes: Nodes<2>, barriers: impl Into<Barriers>, settings: ApproximationSettings) -> Self {
         let boxes: Vec<_> =
             nodes.positions.iter().zip(&nodes.support_radii).map(|(p, r)| Aabb::around(*p, *r)).collect();
-        Self { supports: BoxTree::new(&boxes), nodes, obstacles, settings }
+        Self { supports: BoxTree::new(&boxes), sight: Sight::new(barriers.into(), &nodes), nodes, settings }
     }
 
     /// The nodes.
@@ -58,7 +60,7 @@ impl MovingLeastSquares {
 
     /// The obstacles.
     pub fn obstacles(&self) -> &Obstacles {
-        &self.obstacles
+        self.sight.obstacles()
     }
 
     /// The settings.
@@ -75,7 +77,7 @@ impl MovingLeastSquares {
         for &i in &around.candidates {
             reach = reach.including(self.nodes.sights[i as usize]);
         }
-        self.obstacles.near_into(&reach, &mut around.obstacles);
+        self.sight.survey(&reach, &around.candidates, &mut around.sight);
         let [xs, ys] = &mut around.positions;
         xs.clear();
         ys.clear();
@@ -88,15 +90,16 @@ impl MovingLeastSquares {
         }
     }
 
-    /// Gathers the visible neighbors of a point that was surveyed.
+    /// Gathers the neighbors of a point that was surveyed.
     #[inline]
     pub fn gather(&self, at: Vector2, sight: Vector2, derivatives: Derivatives, around: &mut Surroundings) {
-        let visible = |obstacles: &[u32], node: u32| {
-            obstacles.is_empty() || self.obstacles.visible_past(obstacles, sight, self.nodes.sights[node as usize])
-        };
+        around.sight.start_point();
+        let view = View { at, sight };
+        let relative = |c: &Candidate, buffer: &mut SightBuffer| self.sight.relative(&view, &self.nodes, c, buffer);
         match self.settings.support {
-            SupportShape::Circular => self.gather_circular(at, around, visible),
-            SupportShape::Rectangular => self.gather_rectangular(at, around, visible),
+            SupportShape::Circular if around.sight.is_open() => self.gather_circular(at, around, |c, _| c.relative),
+            SupportShape::Circular => self.gather_circular(at, around, relative),
+            SupportShape::Rectangular => self.gather_rectangular(at, around, relative),
         }
         if derivatives == Derivatives::Second {
             let (function, shape) = (self.settings.weight_function, self.settings.support);
@@ -106,48 +109,70 @@ impl MovingLeastSquares {
                 let second = function.second_derivatives(shape, &offset, &self.nodes.support_radii[i as usize]);
                 near.weight_second_derivatives.push(second);
             }
+            around.sight.mend_second(function, &near.inverse, &mut near.weight_second_derivatives);
         }
     }
 
     /// Disks: distances of all candidates at once, then the weights of those in reach.
+    ///
+    /// - `relative`: squared argument of the weight function of a candidate whose disk holds the point
     #[inline]
-    fn gather_circular(&self, at: Vector2, around: &mut Surroundings, visible: impl Fn(&[u32], u32) -> bool) {
-        let Surroundings { candidates, obstacles, positions, inverse, near } = around;
+    fn gather_circular(
+        &self,
+        at: Vector2,
+        around: &mut Surroundings,
+        mut relative: impl FnMut(&Candidate, &mut SightBuffer) -> f64,
+    ) {
+        let Surroundings { candidates, sight, positions, inverse, near } = around;
         let n = candidates.len();
         near.resize(n);
         let [xs, ys] = positions;
         let [ox, oy] = &mut near.offsets;
         let mut m = 0;
         // Every candidate is written, and overwritten by the next if it is out of reach: no branch to guess.
-        for (((&node, &px), &py), &inverse2) in candidates.iter().zip(&*xs).zip(&*ys).zip(&*inverse) {
+        for (index, (((&node, &px), &py), &inverse2)) in
+            candidates.iter().zip(&*xs).zip(&*ys).zip(&*inverse).enumerate()
+        {
             let (x, y) = (px - at.x, py - at.y);
-            let s2 = (x * x + y * y) * inverse2;
+            let mut s2 = (x * x + y * y) * inverse2;
+            if s2 < 1.0 {
+                s2 = relative(&Candidate { index, neighbor: m, node, relative: s2, inverse: inverse2 }, sight);
+            }
             near.nodes[m] = node;
             ox[m] = x;
             oy[m] = y;
             near.relative[m] = s2;
             near.inverse[m] = inverse2;
-            m += (s2 < 1.0 && visible(obstacles, node)) as usize;
+            m += (s2 < 1.0) as usize;
         }
         near.resize(m);
         let [gx, gy] = &mut near.weight_gradients;
         self.settings.weight_function.values_and_slopes(&near.relative, &mut near.weights, gx);
+        sight.keep_slopes(gx);
         let [ox, oy] = &near.offsets;
         for k in 0..m {
             let factor = -gx[k] * near.inverse[k];
             gx[k] = factor * ox[k];
             gy[k] = factor * oy[k];
         }
+        sight.mend_gradients(&near.inverse, &mut near.weight_gradients);
     }
 
+    /// Rectangles, which know visibility only.
     #[inline(never)]
-    fn gather_rectangular(&self, at: Vector2, around: &mut Surroundings, visible: impl Fn(&[u32], u32) -> bool) {
-        let Surroundings { candidates, obstacles, near, .. } = around;
+    fn gather_rectangular(
+        &self,
+        at: Vector2,
+        around: &mut Surroundings,
+        mut relative: impl FnMut(&Candidate, &mut SightBuffer) -> f64,
+    ) {
+        let Surroundings { candidates, sight, near, .. } = around;
         near.resize(candidates.len());
         let mut m = 0;
-        for &i in candidates.iter() {
+        for (index, &i) in candidates.iter().enumerate() {
             let (offset, radii) = (self.nodes.positions[i as usize] - at, &self.nodes.support_radii[i as usize]);
-            if WeightFunction::reaches(SupportShape::Rectangular, &offset, radii) && visible(obstacles, i) {
+            let candidate = Candidate { index, neighbor: m, node: i, relative: 0.0, inverse: 0.0 };
+            if WeightFunction::reaches(SupportShape::Rectangular, &offset, radii) && relative(&candidate, sight) < 1.0 {
                 let (weight, gradient) =
                     self.settings.weight_function.weight(SupportShape::Rectangular, &offset, radii);
                 near.nodes[m] = i;

@@ -18,6 +18,8 @@ pub struct ApproximationSettings {
     pub support: SupportShape,
     /// Which neighbor gives the characteristic spacing; automatic: second for regular nodes, third for irregular ones.
     pub spacing_from: SpacingFrom,
+    /// What weights do near crack tips, holes and re-entrant corners.
+    pub smoothing: SmoothingSettings,
 }
 
 impl Default for ApproximationSettings {
@@ -28,6 +30,7 @@ impl Default for ApproximationSettings {
             dilation: None,
             support: SupportShape::Circular,
             spacing_from: SpacingFrom::Automatic,
+            smoothing: SmoothingSettings::default(),
         }
     }
 }
@@ -43,6 +46,101 @@ impl ApproximationSettings {
             (Basis::Linear, WeightFunction::QuarticSpline | WeightFunction::CubicSpline) => 2.0,
         })
     }
+
+    /// The smoothing that is used, nothing left open; rectangular supports know visibility only.
+    pub fn resolved_smoothing(&self) -> SmoothingSettings {
+        let given = match self.support {
+            SupportShape::Circular => self.smoothing,
+            SupportShape::Rectangular => SmoothingSettings::VISIBILITY,
+        };
+        SmoothingSettings { cracks: Some(given.cracks()), holes: Some(given.holes()) }
+    }
+}
+
+/// Weight functions near boundaries that are not convex [EFG, section 4].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct SmoothingSettings {
+    /// Around cracks; visibility if not given.
+    pub cracks: Option<CrackSmoothing>,
+    /// Around holes and re-entrant corners; diffraction if not given.
+    pub holes: Option<HoleSmoothing>,
+}
+
+impl SmoothingSettings {
+    /// Plain visibility everywhere.
+    pub const VISIBILITY: Self =
+        Self { cracks: Some(CrackSmoothing::Visibility), holes: Some(HoleSmoothing::Visibility) };
+
+    /// What is used at cracks: as given, or visibility, which gives the best K with polynomial bases.
+    pub fn cracks(&self) -> CrackSmoothing {
+        self.cracks.unwrap_or(CrackSmoothing::Visibility)
+    }
+
+    /// What is used at holes and re-entrant corners: as given, or diffraction, with the exponent of the cracks.
+    pub fn holes(&self) -> HoleSmoothing {
+        let lambda = match self.cracks() {
+            CrackSmoothing::Diffraction { lambda } => lambda,
+            CrackSmoothing::Transparency { .. } => 1.0,
+            CrackSmoothing::Visibility | CrackSmoothing::SeeThrough => two(),
+        };
+        self.holes.unwrap_or(HoleSmoothing::Diffraction { lambda })
+    }
+}
+
+/// How a node acts behind a crack.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum CrackSmoothing {
+    /// Not at all: cracks are opaque, and weights jump along the lines from nodes over a tip (4.1).
+    Visibility,
+    /// Around tips and kinks, by the shortest way (4.2).
+    Diffraction {
+        /// Exponent λ of the detour in Eq. 29, at least 1; the weight's argument is the length of the way for 1.
+        #[serde(default = "two")]
+        #[schemars(range(min = 1.0, max = 10.0))]
+        lambda: f64,
+    },
+    /// Through the crack close to a tip, less the farther behind it; around kinks by the shortest way (4.3).
+    Transparency {
+        /// Distance behind the tip where the crack becomes opaque, over the node spacing at the tip (κ), positive.
+        #[serde(default = "half")]
+        #[schemars(range(min = 0.0, max = 10.0))]
+        kappa: f64,
+        /// Exponent λ of Eq. 32, at least 2.
+        #[serde(default = "two")]
+        #[schemars(range(min = 2.0, max = 10.0))]
+        lambda: f64,
+    },
+    /// As if there were no crack, wherever a line inside the support leads around a tip (4.4). Shortens the crack; for
+    /// comparison.
+    SeeThrough,
+}
+
+/// How a node acts behind a hole or a re-entrant corner.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum HoleSmoothing {
+    /// Not at all: weights jump along the lines that graze the boundary (4.1). A little is seen beyond the horizon of
+    /// arcs, so that neighbors on the rim of a hole see each other.
+    Visibility,
+    /// Around the boundary, by the shortest way (4.2).
+    Diffraction {
+        /// Exponent λ of the detour in Eq. 29, at least 1, the same as around cracks; 1 where cracks are transparent.
+        #[serde(default = "two")]
+        #[schemars(range(min = 1.0, max = 10.0))]
+        lambda: f64,
+    },
+    /// As if the hole were filled, wherever a line inside the support leads around it (4.4).
+    SeeThrough,
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+fn two() -> f64 {
+    2.0
 }
 
 /// Polynomial basis [EFG, Eq. 5].

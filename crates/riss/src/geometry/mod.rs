@@ -1,9 +1,11 @@
 //! Points, curves, boxes and searches.
 //!
-//! Reading order: [`predicates`], [`aabb`], [`tree`], [`curve`], [`polygon`]. Has never heard of cracks, nodes or loads.
+//! Reading order: [`predicates`], [`aabb`], [`tree`], [`curve`], [`polygon`], [`obstacles`], [`geodesics`]. Has never
+//! heard of cracks, nodes or loads.
 
 pub mod aabb;
 pub mod curve;
+pub mod geodesics;
 pub mod obstacles;
 pub mod polygon;
 pub mod predicates;

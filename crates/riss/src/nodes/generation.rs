@@ -79,7 +79,7 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
 /// A disk in which only the star's own nodes stand.
 type Disk = (Vector2, f64);
 
-/// Tip nodes and rings around them [EFG, section 2.2; Terry 1994]; the first node of a ring stands on the crack.
+/// Tip nodes and rings around them [EFG, section 2.2; Terry1994]; the first node of a ring stands on the crack.
 fn add_stars(chains: &mut Chains, model: &Model, star: Option<&Star>) -> Vec<Disk> {
     let Some(star) = star else { return vec![] };
     let mut disks = vec![];

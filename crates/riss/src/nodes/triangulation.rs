@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::math::{Vector2, cross, direction};
 use rustc_hash::FxHashSet;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
+use std::f64::consts::TAU;
 
 /// How far a copy's point of view is moved into its sector, over the local point distance.
 ///
@@ -21,6 +22,10 @@ pub struct PointCopy {
     pub point: u32,
     /// From where visibility is asked: slightly inside the sector.
     pub sight: Vector2,
+    /// Angle of the sector [rad]: 2π at a tip and inside the body.
+    pub opening: f64,
+    /// Unit vector along the middle of the sector; zero inside the body.
+    pub middle: Vector2,
 }
 
 /// Triangles that cover the body.
@@ -83,7 +88,7 @@ impl Triangulation {
         for (point, corners) in around.iter().enumerate() {
             for sector in sectors(point as u32, corners, triangles, cracks) {
                 let copy = self.copies.len() as u32;
-                self.copies.push(PointCopy { point: point as u32, sight: self.sight(point, &sector, triangles) });
+                self.copies.push(self.copy(point, &sector, triangles));
                 for &(triangle, corner) in &sector.corners {
                     self.triangles[triangle as usize][corner as usize] = copy;
                 }
@@ -112,10 +117,10 @@ impl Triangulation {
             .collect();
     }
 
-    fn sight(&self, point: usize, sector: &Sector, triangles: &[[u32; 3]]) -> Vector2 {
+    fn copy(&self, point: usize, sector: &Sector, triangles: &[[u32; 3]]) -> PointCopy {
         let p = self.positions[point];
-        if sector.closed || sector.is_tip {
-            return p;
+        if sector.closed {
+            return PointCopy { point: point as u32, sight: p, opening: TAU, middle: Vector2::zeros() };
         }
         let (first, k) = sector.corners[0];
         let start = self.positions[triangles[first as usize][(k as usize + 1) % 3] as usize] - p;
@@ -127,7 +132,9 @@ impl Triangulation {
                 cross(corner(1), corner(2)).atan2(corner(1).dot(&corner(2)))
             })
             .sum();
-        p + direction(start.y.atan2(start.x) + 0.5 * opening) * (SIGHT_SHIFT * self.edge_length[point])
+        let middle = direction(start.y.atan2(start.x) + 0.5 * opening);
+        let sight = if sector.is_tip { p } else { p + middle * (SIGHT_SHIFT * self.edge_length[point]) };
+        PointCopy { point: point as u32, sight, opening, middle }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Everything discrete about a body, read-only once built: nodes, supports, cells, neighbor lists.
 
-use crate::approximation::discontinuity::visibility_obstacles;
+use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
 use crate::approximation::moving_least_squares::{Derivatives, support_radii};
-use crate::approximation::{ApproximationSettings, MovingLeastSquares, SpacingFrom, Surroundings};
+use crate::approximation::{ApproximationSettings, CrackSmoothing, MovingLeastSquares, SpacingFrom, Surroundings};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
@@ -102,9 +102,14 @@ impl Discretization {
         integration: &IntegrationSettings,
     ) -> Result<Self> {
         let Layered { chains, triangulation, grid_step } = layered;
-        let (mut nodes, node_of_copy) = nodes_of(&triangulation, &chains.is_node);
+        let (mut nodes, mut node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let obstacles = visibility_obstacles(model, &triangulation);
+        let smoothing = approximation.resolved_smoothing();
+        let barriers = barriers(model, &triangulation, &smoothing);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
+        if smoothing.cracks() == CrackSmoothing::SeeThrough {
+            join_sides(&mut nodes, &mut node_of_copy, &barriers, approximation);
+        }
         let tips: Vec<Vector2> = model.tips().iter().map(|t| t.1.position).collect();
         let mut cells = match integration.scheme {
             Scheme::Elements => {
@@ -121,7 +126,7 @@ impl Discretization {
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
         let crack_faces = crack_face_elements(model, &chains, integration);
         let parts = Parts { cells: &cells, boundary: &boundary, crack_faces: &crack_faces };
-        let (approximation, lists) = safeguard(nodes, obstacles, *approximation, &parts)?;
+        let (approximation, lists) = safeguard(nodes, obstacles, &barriers, *approximation, &parts)?;
         let (of_cells, rest) = lists.split_at(cells.len());
         let [cell_nodes, boundary_nodes] = [of_cells, &rest[..boundary.len()]].map(NodeLists::from_lists);
         Ok(Self {
@@ -281,11 +286,46 @@ fn set_supports(
     nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, dilation, *c)).collect();
 }
 
+/// Makes nodes one that stand at the same place and see each other through a crack: their functions would be the same.
+fn join_sides(
+    nodes: &mut Nodes<2>,
+    node_of_copy: &mut [Option<u32>],
+    barriers: &Barriers,
+    settings: &ApproximationSettings,
+) {
+    let approximation = MovingLeastSquares::new(nodes.clone(), barriers.clone(), *settings);
+    let mut around = Surroundings::default();
+    let mut kept = Nodes::default();
+    let mut new_index: Vec<u32> = vec![];
+    // Nodes at one place follow each other.
+    for i in 0..nodes.len() {
+        let (at, sight) = (nodes.positions[i], nodes.sights[i]);
+        let before = (0..i).rev().take_while(|j| nodes.positions[*j] == at).collect::<Vec<_>>();
+        if !before.is_empty() {
+            approximation.survey(&Aabb::of_points([at, sight]), &mut around);
+            approximation.gather(at, sight, Derivatives::First, &mut around);
+        }
+        let twin = before.into_iter().find(|j| around.near.nodes.contains(&(*j as u32)));
+        new_index.push(match twin {
+            Some(j) => new_index[j],
+            None => {
+                kept.positions.push(at);
+                kept.sights.push(sight);
+                kept.support_radii.push(nodes.support_radii[i]);
+                kept.positions.len() as u32 - 1
+            }
+        });
+    }
+    node_of_copy.iter_mut().flatten().for_each(|node| *node = new_index[*node as usize]);
+    *nodes = kept;
+}
+
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
 /// parts.
 fn safeguard(
     mut nodes: Nodes<2>,
     obstacles: Obstacles,
+    barriers: &Barriers,
     settings: ApproximationSettings,
     parts: &Parts,
 ) -> Result<(MovingLeastSquares, Vec<Vec<u32>>)> {
@@ -293,7 +333,7 @@ fn safeguard(
     let mut suspects = all.clone();
     let tree = BoxTree::of_points(&nodes.positions);
     for round in 0..=SUPPORT_ROUNDS {
-        let approximation = MovingLeastSquares::new(nodes, obstacles.clone(), settings);
+        let approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings);
         let found = parts.inspect_all(&approximation, &suspects);
         let poor = || found.iter().flat_map(|i| &i.poor);
         // Poor but not singular is taken after the last round.

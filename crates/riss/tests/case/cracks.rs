@@ -2,7 +2,7 @@
 
 use super::{bad, good, template};
 use riss::crack::CrackPath;
-use riss::crack::EndKind::{Mouth, Tip};
+use riss::crack::EndKind::{Junction, Mouth, Tip};
 
 fn crack(path: &str) -> CrackPath {
     with_geometry("", path).0
@@ -68,6 +68,36 @@ fn arcs_become_fine_polylines() {
     assert!(arc.vertices.windows(3).all(|w| turn(w) < 2.0 + 1e-9));
     let fine = crack("arc = { start = [2, 8], through = [3, 9], end = [4, 8], spacing = 0.01 }");
     assert!(fine.segments().all(|(a, b)| (b - a).norm() <= 0.01));
+}
+
+/// All cracks of a case, and the number of notes.
+fn all_cracks(paths: &[&str]) -> (Vec<CrackPath>, usize) {
+    let mut template = template();
+    template.geometry += &paths.iter().map(|p| format!("[[crack]]\npath = {p}\n")).collect::<String>();
+    let case = good(&template);
+    (case.model.cracks.clone(), case.notes.len())
+}
+
+#[test]
+fn cracks_that_meet_are_joined_with_a_note() {
+    let (tee, notes) = all_cracks(&["[[0, 8], [4, 8]]", "[[2, 8], [2, 10]]"]);
+    assert_eq!((tee[0].ends, tee[1].ends, tee[0].vertices.len(), notes), ([Mouth, Tip], [Junction, Tip], 3, 1));
+    let (cross, notes) = all_cracks(&["[[1, 8], [4, 8]]", "[[2, 7], [3, 9]]"]);
+    assert_eq!((cross[0].ends, cross[1].ends, notes), ([Tip; 2], [Tip; 2], 1));
+    assert_eq!(cross[0].vertices[1], cross[1].vertices[1]);
+    assert!((cross[0].vertices[1] - riss::math::Vector2::new(2.5, 8.0)).norm() < 1e-12);
+    let (star, notes) = all_cracks(&["[[3, 8], [4, 8]]", "[[3, 8], [2, 9]]", "[[3, 8], [2, 7]]"]);
+    assert!(star.iter().all(|c| c.ends == [Junction, Tip]) && notes == 1);
+    // Two mouths in one place.
+    let (vee, notes) = all_cracks(&["[[0, 8], [2, 9]]", "[[0, 8], [2, 7]]"]);
+    assert!(vee.iter().all(|c| c.ends == [Mouth, Tip]) && notes == 1);
+}
+
+#[test]
+fn cracks_that_run_along_each_other_are_refused() {
+    let mut template = template();
+    template.geometry += "[[crack]]\npath = [[0, 8], [4, 8]]\n[[crack]]\npath = [[3, 8], [5, 8]]\n";
+    assert!(bad(&template).contains("runs along the crack `crack-1`"));
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Pictures: what they show, and how large they are.
 
 use crate::sample;
+use riss::analysis::{Settings, Silent, discretize, nearest_node, sample_node_function};
+use riss::approximation::{CrackSmoothing, SmoothingSettings};
 use riss::crack::{CrackPath, EndKind};
 use riss::geometry::curve::Curve;
 use riss::math::Vector2;
@@ -8,7 +10,7 @@ use riss::model::{
     BodyForce, BoundaryLoad, BoundarySupport, Direction, Domain, Model, PointLoad, PointSupport, PrescribedValue,
     RigidMotion, Spring, TractionValue,
 };
-use riss::output::{FieldQuantity, write_field_picture, write_model_picture};
+use riss::output::{FieldQuantity, write_field_picture, write_model_picture, write_shape_pictures};
 
 fn field_picture(n: usize, quantity: FieldQuantity) -> String {
     let dir = tempfile::tempdir().unwrap();
@@ -115,5 +117,55 @@ fn model_picture_names_parts_and_cracks() {
     let picture = model_picture(0.1);
     for text in [">bottom<", ">left<", ">hole<", ">crack-1<", ">b<", ">Everything &lt;at once&gt;<"] {
         assert!(picture.contains(text), "{text}");
+    }
+}
+
+/// Under the visibility criterion a node above a crack is nothing below it; its own side has its weight.
+#[test]
+fn sampled_functions_have_both_sides_of_a_crack() {
+    let model = model();
+    let mut settings = Settings::default();
+    settings.approximation.smoothing = SmoothingSettings::VISIBILITY;
+    let discrete = discretize(&model, &settings, &mut Silent).unwrap();
+    // In the middle of the first segment of the edge crack, on its left.
+    let middle = Vector2::new(0.35, 1.0);
+    let node = nearest_node(&discrete, middle + Vector2::new(0.0, 1e-9));
+    let function = sample_node_function(&discrete, node);
+    assert!((function.position.y - 1.0).abs() < 1e-12 && discrete.approximation.nodes().sights[node].y > 1.0);
+    let radius = function.support_radius;
+    let (mut above, mut below) = (0.0f64, 0.0f64);
+    for t in &function.triangles {
+        let center = t.iter().map(|v| function.points[*v as usize]).sum::<Vector2>() / 3.0;
+        for v in t.map(|v| v as usize) {
+            let away = (function.points[v] - function.position).norm();
+            // [EFG, Eq. 1].
+            let s = (away / radius).min(1.0);
+            let expected = 1.0 - 6.0 * s.powi(2) + 8.0 * s.powi(3) - 3.0 * s.powi(4);
+            if center.y > 1.0 {
+                assert!((function.weight[v] - expected).abs() < 1e-12, "{away} {}", function.weight[v]);
+                above = above.max(function.shape[v]);
+            } else {
+                assert_eq!(function.weight[v], 0.0);
+                below = below.max(function.shape[v].abs());
+            }
+        }
+    }
+    assert!(above > 0.2 && below == 0.0, "{above} {below}");
+}
+
+#[test]
+fn functions_are_drawn_as_contours_and_surfaces() {
+    let model = model();
+    let mut settings = Settings::default();
+    settings.approximation.smoothing.cracks = Some(CrackSmoothing::Diffraction { lambda: 1.0 });
+    let discrete = discretize(&model, &settings, &mut Silent).unwrap();
+    let node = nearest_node(&discrete, Vector2::new(1.0, 1.3));
+    let dir = tempfile::tempdir().unwrap();
+    let written = write_shape_pictures(dir.path(), &model, &sample_node_function(&discrete, node)).unwrap();
+    assert_eq!(written.len(), 4);
+    for path in written {
+        let picture = std::fs::read_to_string(path).unwrap();
+        assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n") && !picture.contains("NaN"));
+        assert!((5_000..400_000).contains(&picture.len()), "{}", picture.len());
     }
 }

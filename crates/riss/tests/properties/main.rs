@@ -4,3 +4,4 @@
 mod bodies;
 mod invariance;
 mod shape_functions;
+mod smoothing;

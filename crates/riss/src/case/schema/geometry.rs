@@ -131,7 +131,7 @@ pub(in crate::case) struct Part {
     pub to: Point,
 }
 
-/// A crack: `path` or `arc`. Ends on the boundary are mouths, others tips.
+/// A crack: `path` or `arc`. Ends on the boundary are mouths, ends on other cracks junctions, others tips.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct Crack {
