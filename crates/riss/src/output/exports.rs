@@ -95,7 +95,8 @@ fn points(crack: &CrackResults) -> Vec<Vector2> {
 }
 
 fn length(path: &[Vector2]) -> f64 {
-    path.windows(2).map(|w| (w[1] - w[0]).norm()).sum()
+    // An empty sum is -0.
+    path.windows(2).map(|w| (w[1] - w[0]).norm()).fold(0.0, |sum, l| sum + l)
 }
 
 fn length_from_origin(first: &CrackResults, now: &CrackResults, end: End) -> f64 {

@@ -102,6 +102,9 @@ impl RunWriter {
             fs::create_dir_all(self.dir.join(RESTART_FOLDER))?;
             files.push((restart_name(step), serde_json::to_vec(state)?));
         }
+        if self.options.fields && result.n_nodes > 0 {
+            files.extend(report::step_files(step, &result.fields));
+        }
         let mut results = Results::of_steps(info, result, self.steps.clone());
         results.files = files.iter().map(|f| f.0.clone()).collect();
         // Those of earlier steps are part of the run, too.
@@ -112,23 +115,22 @@ impl RunWriter {
         if state.is_some() {
             results.files.extend((0..step).map(restart_name));
         }
-        if self.options.fields && result.n_nodes > 0 {
-            for (name, content) in report::step_files(step, &result.fields) {
-                write_file(&self.dir, &name, &content)?;
-            }
-        }
         results.files.push(REPORT_FILE.into());
-        results.files.extend(report::files(&self.dir));
-        files.push((REPORT_FILE.into(), report::report(&self.dir, &results)?.into_bytes()));
-        files.push((RESULTS_FILE.into(), results.to_json().into_bytes()));
-        files
-            .into_iter()
-            .map(|(name, content)| {
-                let path = self.dir.join(name);
-                write_whole(&path, &content)?;
-                Ok(path)
-            })
-            .collect()
+        results.files.extend(report::files_before(&self.dir, step));
+        let mut written = self.write_all(files)?;
+        // The report is made of files of all steps, this one among them.
+        let report = report::report(&self.dir, &results)?.into_bytes();
+        let last = vec![(REPORT_FILE.into(), report), (RESULTS_FILE.into(), results.to_json().into_bytes())];
+        written.extend(self.write_all(last)?);
+        Ok(written)
+    }
+
+    fn write_all(&self, files: Vec<(String, Vec<u8>)>) -> io::Result<Vec<PathBuf>> {
+        let write = |(name, content): (String, Vec<u8>)| {
+            write_file(&self.dir, &name, &content)?;
+            Ok(self.dir.join(name))
+        };
+        files.into_iter().map(write).collect()
     }
 
     /// One collection for each kind of file, over all steps.

@@ -93,13 +93,11 @@ pub(super) fn write_source(dir: &Path, source: Option<&RunSource>) -> io::Result
     }
 }
 
-/// Names of the files below the folder of a run that its report is made of, in order.
-pub(super) fn files(dir: &Path) -> Vec<String> {
-    let entries = fs::read_dir(dir.join(REPORT_FOLDER)).into_iter().flatten().flatten();
-    let names = entries.map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| n.ends_with(".json"));
-    let mut names: Vec<String> = names.map(|n| format!("{REPORT_FOLDER}/{n}")).collect();
-    names.sort();
-    names
+/// Names of the files that the report is made of beside those of `step` and `results.json`.
+pub(super) fn files_before(dir: &Path, step: usize) -> Vec<String> {
+    let of_steps =
+        [Detail::Coarse, Detail::Fine].into_iter().flat_map(|d| (0..step).map(move |s| step_file_name(d, s)));
+    of_steps.chain([SOURCE_FILE.into()]).filter(|name| dir.join(name).is_file()).collect()
 }
 
 fn step_file_name(detail: Detail, step: usize) -> String {
@@ -187,7 +185,8 @@ fn push_json(page: &mut String, json: &str) {
 }
 
 fn html(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    escaped.replace('\u{2028}', "&#x2028;").replace('\u{2029}', "&#x2029;")
 }
 
 /// Puts a text in the place of each mark `{{ name }}`.

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// Most vertices of a step that stands alone in a report.
 const FINE: usize = 60_000;
 /// Most vertices of a step among many.
-const COARSE: usize = 8_000;
+const COARSE: usize = 6_000;
 /// The color scale needs no more triangles than these.
 const SAMPLED_TRIANGLES: usize = 20_000;
 /// Effort of compression: the report is read more often than written.

@@ -101,7 +101,10 @@ class Curves {
       height: CHART_HEIGHT,
       scales: { x: { time: false } },
       cursor: { drag: { x: true, y: false } },
-      axes: [this.axisStyle(axis.title), this.axisStyle(quantities.length > 1 ? "K" : quantities[0].title)],
+      axes: [
+        { ...this.axisStyle(axis.title), size: 34 },
+        { ...this.axisStyle(quantities.length > 1 ? "K" : quantities[0].title), size: this.axisSize },
+      ],
       series: [
         { label: axis.title, value: (_, v) => number(v) },
         ...series.map((s) => ({
@@ -117,13 +120,13 @@ class Curves {
     const quiet = themeColor("quiet");
     const line = { stroke: themeColor("grid"), width: 1 };
     const values = (_, ticks) => ticks.map((t) => number(t, 6));
-    return { label, labelSize: 22, labelFont: "13px system-ui", font: "12px system-ui", stroke: quiet, grid: line, ticks: line, values, size: label === "step" ? 36 : this.axisSize };
+    return { label, labelSize: 24, labelFont: "13px system-ui", font: "12px system-ui", stroke: quiet, grid: line, ticks: line, values };
   }
 
   /** Room for the longest number. */
   axisSize(u, values) {
     const longest = (values ?? []).reduce((most, v) => Math.max(most, v.length), 3);
-    return u && values ? Math.max(36, 14 + 7.2 * longest) : 50;
+    return u && values ? 20 + 7.4 * longest : 50;
   }
 
   drawSpreads(u, spreads) {

@@ -6,7 +6,7 @@ const column = (title, of, kind) => ({ title, of, kind });
 function fillTable(table, columns, rows, isCurrent = () => false) {
   const cells = (row) => columns.map(({ of, kind }) => {
     const value = of(row);
-    const text = typeof value === "number" || value === null || value === undefined ? number(value) : value;
+    const text = typeof value === "number" || value === null || value === undefined ? number(value, kind === "error" ? 3 : 6) : value;
     return element("td", { class: kind, "data-value": value ?? "" }, text);
   });
   const head = element("tr", {}, ...columns.map((c) => element("th", { class: c.kind, scope: "col" }, c.title)));
@@ -59,7 +59,7 @@ const GROWTH_COLUMNS = [
   column("increment", (r) => r.tip.increment),
   column("da/dN", (r) => r.tip.growth_rate),
 ];
-const REASON = column("reason", (r) => r.tip.reason, "text");
+const REASON = column("reason", (r) => r.tip.reason, "text long");
 const STEP_COLUMNS = [
   column("step", (r) => r.step.step),
   column("cycles N", (r) => r.step.cycles),
