@@ -75,7 +75,7 @@ class Curves {
     const time = this.axes.find((a) => a.name === "cycles") ?? this.axes.find((a) => a.name === "step");
     const growth = this.results.steps.some((s) => s.cycles !== null || s.load_factor !== 1) || this.axes.length > 1;
     this.charts = [
-      this.chart("Stress intensity factors with their uncertainty", factors, axis),
+      this.chart("Stress intensity factors ± uncertainty", factors, axis),
       growth ? this.chart(`Crack length over ${time.title}`, [length], time) : null,
       this.choices.length ? this.chart(this.choices[this.choiceSelect.value].title, [this.choices[this.choiceSelect.value]], axis) : null,
     ].filter(Boolean);
