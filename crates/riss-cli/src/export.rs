@@ -106,13 +106,17 @@ fn beta_files(arguments: &ExportArguments, results: &Results) -> Result<Vec<(Str
         return Err("beta factors need --stress and --distance".into());
     };
     let reference = BetaReference { stress, distance };
-    let file = |(crack, end): (String, End)| {
-        let table = beta_table(results, &crack, end, &reference)?;
-        let name: String = crack.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+    let mut files: Vec<(String, Vec<u8>)> = vec![];
+    for (crack, end) in tips(results) {
+        let Some(table) = beta_table(results, &crack, end, &reference) else { continue };
+        let plain: String = crack.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
         let end = if end == End::Start { "start" } else { "end" };
-        Some((format!("beta_{name}_{end}.txt"), table.into_bytes()))
-    };
-    let files: Vec<_> = tips(results).into_iter().filter_map(file).collect();
+        let name = format!("beta_{plain}_{end}.txt");
+        // Names of cracks may differ in signs that names of files do not have.
+        let again = files.iter().filter(|f| f.0 == name).count();
+        let name = if again == 0 { name } else { format!("beta_{plain}_{end}_{}.txt", files.len()) };
+        files.push((name, table.into_bytes()));
+    }
     if files.is_empty() {
         return Err(format!("no tip in {} has a stress intensity factor", arguments.dir.display()));
     }

@@ -43,7 +43,9 @@ const SCRIPT: [&str; 10] = [
     include_str!("js/tables.js"),
     include_str!("js/page.js"),
 ];
-const CURVE_LIBRARY: &str = include_str!("vendor/uPlot.iife.min.js");
+/// With its licence, which goes wherever the library goes.
+const CURVE_LIBRARY: [&str; 4] =
+    ["/*\n", include_str!("vendor/uPlot.LICENSE"), "*/\n", include_str!("vendor/uPlot.iife.min.js")];
 
 /// What was run, for the reader of a report.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -131,7 +133,7 @@ pub(super) fn report(dir: &Path, results: &Results) -> io::Result<String> {
     Ok(fill(PAGE, |mark| match mark {
         "title" => html(&results.case),
         "style" => STYLE.concat(),
-        "curve library" => CURVE_LIBRARY.into(),
+        "curve library" => CURVE_LIBRARY.concat(),
         "script" => SCRIPT.concat(),
         "data" => std::mem::take(&mut data),
         other => unreachable!("the page has no part `{other}`"),
