@@ -123,19 +123,25 @@ fn pack_triangles(
     serde_json::to_string(&packed).expect("fields are plain values")
 }
 
+/// Points along a crack.
+type CrackPoints = fn(&CrackFaces) -> &[Vector2];
+
 fn push_cracks(cracks: &[CrackFaces], data: &mut Vec<u8>) -> Vec<Channel> {
-    let of = |points: fn(&CrackFaces) -> &[Vector2], k: usize| -> Vec<f64> {
+    let of = |points: CrackPoints, k: usize| -> Vec<f64> {
         cracks.iter().flat_map(|c| points(c).iter().map(move |p| p[k])).collect()
     };
-    let channels: [(&str, fn(&CrackFaces) -> &[Vector2], usize, u32); 6] = [
-        ("x", |c| &c.positions, 0, 3),
-        ("y", |c| &c.positions, 1, 3),
-        ("left_x", |c| &c.left, 0, 2),
-        ("left_y", |c| &c.left, 1, 2),
-        ("right_x", |c| &c.right, 0, 2),
-        ("right_y", |c| &c.right, 1, 2),
+    let sides: [([&'static str; 2], CrackPoints, u32); 3] = [
+        (["x", "y"], |c| &c.positions, 3),
+        (["left_x", "left_y"], |c| &c.left, 2),
+        (["right_x", "right_y"], |c| &c.right, 2),
     ];
-    channels.map(|(name, points, k, bytes)| push_channel(name, &of(points, k), Scale::Linear, bytes, data)).to_vec()
+    let mut channels = vec![];
+    for (names, points, bytes) in sides {
+        for (k, name) in names.into_iter().enumerate() {
+            channels.push(push_channel(name, &of(points, k), Scale::Linear, bytes, data));
+        }
+    }
+    channels
 }
 
 /// Triangles along a curve that fills the plane, and the vertices in the order in which they name them, by old number.

@@ -160,8 +160,8 @@ impl<'a> Mesh<'a> {
         };
         targets.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let is_allowed = |onto: u32| {
-            let common = self.neighbors(onto).iter().filter(|v| neighbors.contains(v)).count();
-            common == self.shared(vertex, onto).count() && self.keeps_shape(vertex, onto)
+            let near_both = self.neighbors(onto).iter().filter(|v| neighbors.contains(v)).count();
+            near_both == self.shared(vertex, onto).count() && self.keeps_shape(vertex, onto)
         };
         let onto = targets.into_iter().map(|t| t.1).find(|v| is_allowed(*v))?;
         let error = match ends.as_slice() {
