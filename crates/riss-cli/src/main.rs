@@ -1,10 +1,13 @@
-//! The riss program: `run`, `check`, `shape`, `schema`, `new`.
+//! The riss program: `run`, `check`, `report`, `export`, `shape`, `schema`, `new`.
 
 mod check;
+mod desktop;
 mod diagnostics;
+mod export;
 mod grow;
 mod new;
 mod progress;
+mod report;
 mod results;
 mod resume;
 mod run;
@@ -37,6 +40,10 @@ enum Command {
     Run(run::RunArguments),
     /// Reads and checks a case without running it
     Check(check::CheckArguments),
+    /// Makes report.html again from a folder of results
+    Report(report::ReportArguments),
+    /// Writes the cracks or their stress intensity factors for another program
+    Export(export::ExportArguments),
     /// Draws the weight and the shape function of a node
     Shape(shape::ShapeArguments),
     /// Prints the JSON Schema of the case file
@@ -54,6 +61,8 @@ fn main() -> ExitCode {
     let code = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Report(arguments) => report::write(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
         Command::Shape(arguments) => shape::shape(&arguments),
         Command::Schema => schema::print(),
         Command::New { file } => new::write(&file),

@@ -3,7 +3,7 @@
 use riss::analysis::StaticResult;
 use riss::case::Case;
 use riss::model::Model;
-use riss::output::{OutputOptions, RunInfo, RunStatus, results_json, write_model_picture, write_results};
+use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter, results_json, write_model_picture};
 use riss::system::Discretization;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -57,7 +57,22 @@ pub fn reason(error: &io::Error) -> String {
 
 /// Writes all files of a run into `dir`; returns their paths.
 pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> io::Result<Vec<PathBuf>> {
-    write_results(dir, &run.info(case, RunStatus::Done), result, &options(case))
+    let mut writer = RunWriter::new(dir, options(case))?;
+    writer.describe(&source(case))?;
+    writer.write_step(&run.info(case, RunStatus::Done), result, &run.stage_time_s, None)
+}
+
+/// What is run, for the report.
+pub fn source(case: &Case) -> RunSource {
+    let since_1970 = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    RunSource {
+        case_file: case.path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()),
+        case_text: case.text.clone(),
+        overrides: case.overrides.clone(),
+        platform: format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
+        threads: rayon::current_num_threads(),
+        started_unix_s: since_1970.as_secs(),
+    }
 }
 
 /// What a case wants to be written.

@@ -30,6 +30,7 @@ pub fn begin(case: &Case, dir: &Path) -> Result<Beginning, String> {
     let copy = Resumed { case: path, text: case.text.clone(), overrides: case.overrides.clone() };
     let text = serde_json::to_vec_pretty(&copy).map_err(|e| e.to_string())?;
     write_file(dir, CASE_COPY, &text).map_err(failed)?;
+    writer.describe(&results::source(case)).map_err(failed)?;
     Ok(Beginning { writer, state: None })
 }
 
@@ -63,6 +64,7 @@ impl Resumed {
             .map_err(|e| format!("the state of step {step} in {} cannot be read: {e}", dir.display()))?;
         let writer = RunWriter::resume(dir, results::options(case), step)
             .map_err(|e| format!("the results in {} cannot be continued: {}", dir.display(), results::reason(&e)))?;
+        writer.describe(&results::source(case)).map_err(|e| results::reason(&e))?;
         Ok(Beginning { writer, state: Some(state) })
     }
 }

@@ -4,7 +4,7 @@ use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::{self, Resumed};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, table};
+use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
 use riss::case::Case;
@@ -35,6 +35,9 @@ pub struct RunArguments {
     /// Prints the results as JSON instead of a table
     #[arg(long)]
     pub json: bool,
+    /// Opens the report in the browser of the desktop
+    #[arg(long)]
+    pub open: bool,
     /// Shows no progress and no notes
     #[arg(long, short)]
     pub quiet: bool,
@@ -72,18 +75,26 @@ pub fn run(arguments: &RunArguments) -> u8 {
     if let Err(e) = results::prepare(&dir) {
         return cannot_write(&dir, &e);
     }
+    let code = analyze(arguments, &case, known, &dir);
+    if arguments.open && dir.join(riss::output::REPORT_FILE).is_file() {
+        desktop::open(&dir.join(riss::output::REPORT_FILE));
+    }
+    code
+}
+
+fn analyze(arguments: &RunArguments, case: &Case, known: Option<Resumed>, dir: &Path) -> u8 {
     let progress = Progress::new(arguments.quiet);
     match (&case.growth, known) {
-        (None, None) => run_static(arguments, &case, &dir, progress),
+        (None, None) => run_static(arguments, case, dir, progress),
         (None, Some(_)) => refuse("the case has no [growth]: there is nothing to go on with"),
         (Some(growth), known) => {
             let beginning = match &known {
-                Some(known) => known.beginning(&case, &dir, arguments.from_step),
-                None => resume::begin(&case, &dir),
+                Some(known) => known.beginning(case, dir, arguments.from_step),
+                None => resume::begin(case, dir),
             };
             let speech = if arguments.json { Speech::Json } else { Speech::Table };
             match beginning {
-                Ok(beginning) => grow::grow(&case, growth, beginning, &dir, progress, speech),
+                Ok(beginning) => grow::grow(case, growth, beginning, dir, progress, speech),
                 Err(message) => refuse(&message),
             }
         }

@@ -29,6 +29,8 @@ fn scratch(name: &str) -> PathBuf {
 fn help() {
     insta::assert_snapshot!("help", stdout(&root(), &["--help"]));
     insta::assert_snapshot!("help-run", stdout(&root(), &["run", "--help"]));
+    insta::assert_snapshot!("help-report", stdout(&root(), &["report", "--help"]));
+    insta::assert_snapshot!("help-export", stdout(&root(), &["export", "--help"]));
     assert_eq!(riss(&root(), &["walk"]).status.code(), Some(2));
     assert_eq!(riss(&root(), &["run", "cases/shear-edge-crack/case.toml", "--threads", "0"]).status.code(), Some(2));
     // So many would take all memory.
@@ -133,7 +135,7 @@ fn starting_over_replaces_all_files_and_leaves_no_others() {
     stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet"]);
     let first = files();
     stdout(&folder, &["run", &shear_case(), "--out", "out", "--quiet"]);
-    assert_eq!((files(), first.len()), (first.clone(), 7));
+    assert_eq!((files(), first.len()), (first.clone(), 9));
 }
 
 #[test]

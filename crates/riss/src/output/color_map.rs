@@ -1,7 +1,7 @@
 //! The color map viridis: even in brightness, readable in gray and for the color-blind [Smith and van der Walt].
 
 /// Colors at equal steps of the value.
-const VIRIDIS: [[f64; 3]; 11] = [
+pub(super) const VIRIDIS: [[f64; 3]; 11] = [
     [68., 1., 84.],
     [72., 36., 117.],
     [65., 68., 135.],

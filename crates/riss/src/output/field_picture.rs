@@ -100,7 +100,7 @@ fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) ->
     svg.paths(outline.iter().cloned(), LineEnd::Closed, "fill=\"#bbbbbb\"");
     let values = quantity.values(fields);
     let surface = Surface::new(&pixels, &values, &fields.triangles);
-    let (low, high) = scale(fields, &values);
+    let (low, high) = scale(&fields.positions, &fields.triangles, &values);
     for band in 0..n_bands {
         let level = if band == 0 { f64::NEG_INFINITY } else { low + (high - low) * band as f64 / n_bands as f64 };
         let fill = format!("fill=\"{}\"", viridis((band as f64 + 0.5) / n_bands as f64));
@@ -119,10 +119,10 @@ fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) ->
 }
 
 /// Ends of the color scale; shares of the body are by area.
-fn scale(fields: &Fields, values: &[f64]) -> (f64, f64) {
+pub(super) fn scale(positions: &[Vector2], triangles: &[[u32; 3]], values: &[f64]) -> (f64, f64) {
     let mut shares = vec![];
-    for t in &fields.triangles {
-        let [a, b, c] = t.map(|v| fields.positions[v as usize]);
+    for t in triangles {
+        let [a, b, c] = t.map(|v| positions[v as usize]);
         let area = cross(b - a, c - a).abs();
         shares.extend(t.iter().map(|&v| (values[v as usize], area)).filter(|s| s.0.is_finite()));
     }

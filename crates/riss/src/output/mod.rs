@@ -1,15 +1,17 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
-//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`], [`field_picture`] and [`shape_picture`] with `svg` and
-//! `contours` below them, [`whole_file`].
+//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`], [`field_picture`] and [`shape_picture`] with
+//! `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`].
 
 mod color_map;
 mod contours;
+pub mod exports;
 pub mod field_picture;
 pub mod fields;
 pub mod history;
 pub mod model_picture;
+pub mod report;
 pub mod results;
 pub mod run_writer;
 pub mod shape_picture;
@@ -19,6 +21,7 @@ pub mod whole_file;
 
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
+pub use report::{REPORT_FILE, RunSource, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;

@@ -2,6 +2,7 @@
 
 use super::fields::{STEP_FILE_KINDS, step_file_name, step_files};
 use super::history::history_csv;
+use super::report::{self, REPORT_FILE, REPORT_FOLDER, RunSource};
 use super::results::{Results, StepResults};
 use super::vtk::collection;
 use super::whole_file::write_whole;
@@ -13,6 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// Folder of the states from which growth can go on, one file a step.
 pub const RESTART_FOLDER: &str = "restart";
+
+/// Beginnings of the names of what goes on with a run, and of what its report is made of.
+const OTHER_STEP_FILES: [&str; 3] = ["step", "fine", "coarse"];
 
 /// The folder of a run.
 #[derive(Clone, Debug)]
@@ -32,6 +36,8 @@ impl RunWriter {
     pub fn new(dir: &Path, options: OutputOptions) -> io::Result<Self> {
         fs::create_dir_all(dir)?;
         remove_if_there(&dir.join(RESULTS_FILE))?;
+        remove_if_there(&dir.join(REPORT_FILE))?;
+        report::write_source(dir, None)?;
         remove_steps_from(dir, 0)?;
         Ok(Self { dir: dir.into(), options, steps: vec![], step_files: vec![] })
     }
@@ -55,6 +61,14 @@ impl RunWriter {
         };
         let step_files = STEP_FILE_KINDS.into_iter().flat_map(there).collect();
         Ok(Self { dir: dir.into(), options, steps, step_files })
+    }
+
+    /// Keeps in the folder what is run, for the report.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn describe(&self, source: &RunSource) -> io::Result<()> {
+        report::write_source(&self.dir, Some(source))
     }
 
     /// Writes the files of a step and brings those of the run up to date; returns the paths, `results.json` last.
@@ -88,6 +102,9 @@ impl RunWriter {
             fs::create_dir_all(self.dir.join(RESTART_FOLDER))?;
             files.push((restart_name(step), serde_json::to_vec(state)?));
         }
+        if self.options.fields && result.n_nodes > 0 {
+            files.extend(report::step_files(step, &result.fields));
+        }
         let mut results = Results::of_steps(info, result, self.steps.clone());
         results.files = files.iter().map(|f| f.0.clone()).collect();
         // Those of earlier steps are part of the run, too.
@@ -98,15 +115,22 @@ impl RunWriter {
         if state.is_some() {
             results.files.extend((0..step).map(restart_name));
         }
-        files.push((RESULTS_FILE.into(), results.to_json().into_bytes()));
-        files
-            .into_iter()
-            .map(|(name, content)| {
-                let path = self.dir.join(name);
-                write_whole(&path, &content)?;
-                Ok(path)
-            })
-            .collect()
+        results.files.push(REPORT_FILE.into());
+        results.files.extend(report::files_before(&self.dir, step));
+        let mut written = self.write_all(files)?;
+        // The report is made of files of all steps, this one among them.
+        let report = report::report(&self.dir, &results)?.into_bytes();
+        let last = vec![(REPORT_FILE.into(), report), (RESULTS_FILE.into(), results.to_json().into_bytes())];
+        written.extend(self.write_all(last)?);
+        Ok(written)
+    }
+
+    fn write_all(&self, files: Vec<(String, Vec<u8>)>) -> io::Result<Vec<PathBuf>> {
+        let write = |(name, content): (String, Vec<u8>)| {
+            write_file(&self.dir, &name, &content)?;
+            Ok(self.dir.join(name))
+        };
+        files.into_iter().map(write).collect()
     }
 
     /// One collection for each kind of file, over all steps.
@@ -163,9 +187,9 @@ fn remove_steps_from(dir: &Path, first: usize) -> io::Result<()> {
         let (kind, rest) = name.rsplit_once('_')?;
         let step: usize = rest.split_once('.')?.0.parse().ok()?;
         let ours = STEP_FILE_KINDS.contains(&kind) && name == step_file_name(kind, step);
-        ((ours || kind == "step") && step >= first).then_some(())
+        ((ours || OTHER_STEP_FILES.contains(&kind)) && step >= first).then_some(())
     };
-    for folder in [dir.to_path_buf(), dir.join(RESTART_FOLDER)] {
+    for folder in [dir.to_path_buf(), dir.join(RESTART_FOLDER), dir.join(REPORT_FOLDER)] {
         let Ok(entries) = fs::read_dir(&folder) else { continue };
         for entry in entries {
             let entry = entry?;

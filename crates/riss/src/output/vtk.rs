@@ -84,11 +84,7 @@ pub(super) fn grid(positions: &[Vector2], cells: &Cells, point_arrays: &[Array],
     Array::vectors("Points", positions.iter().copied()).write(&mut text);
     text.push_str("</Points>\n<Cells>\n");
     Array::integers("connectivity", cells.points.iter().map(|&p| p.into())).write(&mut text);
-    let ends = cells.sizes.iter().scan(0, |end, &size| {
-        *end += size as i64;
-        Some(*end)
-    });
-    Array::integers("offsets", ends).write(&mut text);
+    Array::integers("offsets", ends(&cells.sizes)).write(&mut text);
     let types = vec![cells.cell_type as u8; n_cells];
     Array { name: "types", number: "UInt8", components: &[""], bytes: types }.write(&mut text);
     text.push_str("</Cells>\n<PointData>\n");
@@ -97,6 +93,35 @@ pub(super) fn grid(positions: &[Vector2], cells: &Cells, point_arrays: &[Array],
     cell_arrays.iter().for_each(|a| a.write(&mut text));
     text.push_str("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
     text.into_bytes()
+}
+
+/// Polylines in the plane z = 0 (`.vtp`); `sizes` are their numbers of points, which follow one another.
+pub(super) fn lines(positions: &[Vector2], sizes: &[usize], point_arrays: &[Array], cell_arrays: &[Array]) -> Vec<u8> {
+    let mut text = header("PolyData", " header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"");
+    let (n_points, n_lines) = (positions.len(), sizes.len());
+    let _ = writeln!(
+        text,
+        "<Piece NumberOfPoints=\"{n_points}\" NumberOfVerts=\"0\" NumberOfLines=\"{n_lines}\" NumberOfStrips=\"0\" \
+         NumberOfPolys=\"0\">\n<PointData>"
+    );
+    point_arrays.iter().for_each(|a| a.write(&mut text));
+    text.push_str("</PointData>\n<CellData>\n");
+    cell_arrays.iter().for_each(|a| a.write(&mut text));
+    text.push_str("</CellData>\n<Points>\n");
+    Array::vectors("Points", positions.iter().copied()).write(&mut text);
+    text.push_str("</Points>\n<Lines>\n");
+    Array::integers("connectivity", 0..n_points as i64).write(&mut text);
+    Array::integers("offsets", ends(sizes)).write(&mut text);
+    text.push_str("</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+    text.into_bytes()
+}
+
+/// Where each cell ends in the list of points.
+fn ends(sizes: &[usize]) -> impl Iterator<Item = i64> {
+    sizes.iter().scan(0, |end, &size| {
+        *end += size as i64;
+        Some(*end)
+    })
 }
 
 /// Files by step (`.pvd`); names need no escapes.
@@ -125,7 +150,7 @@ fn compress(bytes: &[u8], text: &mut String) {
     push_base64(&blocks.concat(), text);
 }
 
-fn push_base64(bytes: &[u8], text: &mut String) {
+pub(super) fn push_base64(bytes: &[u8], text: &mut String) {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     text.reserve(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {

@@ -1,6 +1,8 @@
 //! Files of a run, read back.
 
+mod exports;
 mod pictures;
+mod report;
 mod results;
 mod sample;
 mod vtk;

@@ -83,14 +83,14 @@ fn results_are_written_last_and_name_the_other_files() {
     let dir = dir.path().join("made/on/the/way");
     let names = |options| -> Vec<String> {
         let paths = write_results(&dir, &info, &result, &options).unwrap();
-        paths.iter().map(|p| p.file_name().unwrap().to_str().unwrap().into()).collect()
+        paths.iter().map(|p| p.strip_prefix(&dir).unwrap().to_str().unwrap().into()).collect()
     };
     let mut all = names(options);
     assert_eq!(all.pop().unwrap(), "results.json");
     let results: Results = serde_json::from_slice(&std::fs::read(dir.join("results.json")).unwrap()).unwrap();
     assert_eq!(results.files, all);
     let few = names(OutputOptions { fields: false, nodes: false, integration_points: false });
-    assert_eq!(few, ["history.csv", "results.json"]);
+    assert_eq!(few, ["history.csv", "report.html", "results.json"]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use riss::output::{OutputOptions, write_results};
 use std::collections::BTreeMap;
 
 /// Arrays of a grid by name, as numbers.
-fn arrays(text: &str) -> BTreeMap<String, Vec<f64>> {
+pub fn arrays(text: &str) -> BTreeMap<String, Vec<f64>> {
     let attribute = |tag: &str, name: &str| {
         let start = tag.find(&format!(" {name}=\"")).unwrap() + name.len() + 3;
         tag[start..].split('"').next().unwrap().to_string()
