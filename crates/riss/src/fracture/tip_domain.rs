@@ -266,7 +266,7 @@ impl TipView {
 }
 
 /// Distance to the rim of the domain of unit size in direction `theta`.
-fn rim(shape: TipDomainShape, theta: f64) -> f64 {
+pub(super) fn rim(shape: TipDomainShape, theta: f64) -> f64 {
     match shape {
         TipDomainShape::Disc => 1.0,
         TipDomainShape::Square => 1.0 / theta.cos().abs().max(theta.sin().abs()),

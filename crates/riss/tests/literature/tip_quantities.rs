@@ -31,7 +31,7 @@ fn mixed() -> Model {
 }
 
 fn run(domain: TipDomainShape, j_integral: JIntegral, radii: Option<Vec<f64>>) -> (TipRecord, Vec<String>) {
-    let settings = Settings { fracture: FractureSettings { domain, j_integral, radii }, ..Settings::default() };
+    let settings = Settings { fracture: FractureSettings { domain, j_integral, radii, ..FractureSettings::default() }, ..Settings::default() };
     let result = solve(&mixed(), &settings);
     (tips(&result)[0].clone(), result.warnings.iter().map(|w| w.message.clone()).collect())
 }
