@@ -3,13 +3,15 @@
 use super::energy::{reactions, strain_energy};
 use super::fields::sample_fields;
 use super::record::*;
+use super::refinement::refine;
 use super::settings::Settings;
 use crate::crack::TipId;
 use crate::error::{Error, Result};
 use crate::fracture::{ForceAt, SolutionField, TipIntegrals, TipView, configurational_forces, tip_integrals};
 use crate::math::Vector2;
 use crate::model::{FieldPoint, Model, RigidMotion};
-use crate::nodes::generate;
+use crate::nodes::spacing::SpacingField;
+use crate::nodes::{generate, generate_at};
 use crate::system::solve::UNBALANCED;
 use crate::system::{ConstraintMethod, Discretization, Solution, assemble, solve};
 
@@ -38,16 +40,13 @@ pub(super) fn solve_step(
     observer: &mut dyn Observer,
 ) -> Result<StaticResult> {
     let mut warnings = Warnings::new(observer);
-    let discrete = discretize(model, settings, warnings.observer)?;
-    let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
-    if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
-        warnings.add(format!(
-            "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
-            100.0 * solution.imbalance
-        ));
-    }
-    warnings.observer.stage(Stage::Fracture);
-    let cracks = evaluate_cracks(model, settings, &discrete, &solution, &mut warnings)?;
+    let (Solved { discrete, solution, method, cracks }, refinements) = match &settings.accuracy {
+        Some(accuracy) => refine(model, settings, accuracy, &mut warnings)?,
+        None => {
+            let discrete = discretize(model, settings, warnings.observer)?;
+            (solve_on(model, settings, discrete, &mut warnings)?, vec![])
+        }
+    };
     warnings.observer.stage(Stage::Fields);
     let energy = strain_energy(model, &discrete, &solution)?;
     let fields = match warnings.observer.wants_fields(step) {
@@ -70,11 +69,40 @@ pub(super) fn solve_step(
         strain_energy: energy.strain_energy * model.thickness,
         energy_error: energy.relative_error,
         residual: solution.residual,
+        refinements,
         fields,
         nodes: node_records.collect(),
         integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
         warnings: warnings.list,
     })
+}
+
+/// A solution, and the cracks in it.
+pub(super) struct Solved {
+    pub discrete: Discretization,
+    pub solution: Solution,
+    /// As it was used.
+    pub method: ConstraintMethod,
+    pub cracks: Vec<CrackRecord>,
+}
+
+/// Solves on given nodes and evaluates every tip.
+pub(super) fn solve_on(
+    model: &Model,
+    settings: &Settings,
+    discrete: Discretization,
+    warnings: &mut Warnings,
+) -> Result<Solved> {
+    let (solution, method) = solve_once(model, settings, &discrete, warnings)?;
+    if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
+        warnings.add(format!(
+            "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
+            100.0 * solution.imbalance
+        ));
+    }
+    warnings.observer.stage(Stage::Fracture);
+    let cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
+    Ok(Solved { discrete, solution, method, cracks })
 }
 
 /// Nodes, supports, cells and neighbor lists of a model.
@@ -84,6 +112,22 @@ pub(super) fn solve_step(
 pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
     let layered = generate(model, &settings.nodes)?;
+    observer.stage(Stage::Discretization);
+    Discretization::new(model, layered, &settings.approximation, &settings.integration)
+}
+
+/// The same with irregular nodes at a given spacing.
+///
+/// # Errors
+/// [`Error::NodeGeneration`] and [`Error::SingularMomentMatrix`].
+pub fn discretize_at(
+    model: &Model,
+    settings: &Settings,
+    spacing: &SpacingField,
+    observer: &mut dyn Observer,
+) -> Result<Discretization> {
+    observer.stage(Stage::Nodes);
+    let layered = generate_at(model, spacing, settings.nodes.star.as_ref())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }

@@ -1,0 +1,7 @@
+//! Error estimates and refinement against exact fields.
+
+#[path = "../bodies/mod.rs"]
+mod bodies;
+mod effectivity;
+mod half_central_crack;
+mod problems;
