@@ -263,7 +263,9 @@ mod tests {
             let mut tree = Quadtree::uniform(&unit(), 0.5);
             for (x, y, grows) in points {
                 let leaf = tree.leaf_at(Vector2::new(x, y)).unwrap();
-                prop_assert!({ let b = tree.bounds(leaf); b.lower.x <= x && x <= b.upper.x && b.lower.y <= y && y <= b.upper.y });
+                let at = Vector2::new(x, y);
+                let holds = tree.bounds(leaf).intersects(&Aabb { lower: at, upper: at });
+                prop_assert!(holds);
                 if grows {
                     tree.refine(&[leaf]);
                 } else if let Some(parent) = leaf.parent() {

@@ -46,6 +46,9 @@ pub fn solve_refined(
     Ok(Refined { discrete: solved.discrete, solution: solved.solution, refinements })
 }
 
+/// The factors of a tip that is loaded less than this part of the most loaded one are measured by that part.
+const SHADOW: f64 = 0.01;
+
 /// Solves on the nodes as placed, then on finer ones; says in a warning what could not be met.
 pub(super) fn refine(
     model: &Model,
@@ -119,13 +122,14 @@ fn record(
     let factors: Vec<[f64; 2]> = tips(&mut solved.cracks).map(|(_, k)| k).collect();
     let before = before.filter(|b| b.factors.len() == factors.len());
     let mut k_error = before.filter(|_| !factors.is_empty()).map(|_| 0.0f64);
+    let largest = factors.iter().map(|[k1, k2]| k1.hypot(*k2)).fold(0.0, f64::max);
     for (i, (tip, [k1, k2])) in tips(&mut solved.cracks).enumerate() {
         let Some(before) = before else { break };
         let [b1, b2] = before.factors[i];
         let change = (k1 - b1).abs().max((k2 - b2).abs());
         let bar = tip.k_uncertainty.unwrap_or(0.0).max(change);
         tip.k_uncertainty = Some(bar);
-        k_error = k_error.map(|e| e.max(bar / k1.hypot(k2)));
+        k_error = k_error.map(|e| e.max(bar / k1.hypot(k2).max(SHADOW * largest)));
     }
     let (n_nodes, error_estimate) = (solved.discrete.n_nodes(), estimate.relative());
     Ok(RefinementRecord { n_nodes, error_estimate, energy_error, k_error, factors })

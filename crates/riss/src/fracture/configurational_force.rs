@@ -20,6 +20,8 @@ use rayon::prelude::*;
 
 /// Points on each piece of the crack faces.
 const FACE_POINTS: usize = 24;
+/// Part of the radius in which the energy on the faces is extrapolated.
+const TIP_SHARE: f64 = 1.0 / 16.0;
 
 /// The configurational force from one domain or outline, in the tip frame: ahead, and to the left.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -155,6 +157,9 @@ struct FacePoint {
 }
 
 /// Points on both faces from the tip to where the crack leaves the domain.
+///
+/// What the solution has of stress along the faces at the tip is noise of the size of the force itself on any nodes. The jump
+/// of the energy is `f(√r)/√r` with a smooth f: the line that fits f from r_0 to 4 r_0 stands for it within r_0.
 fn face_points(view: &TipView, shape: TipDomainShape, radius: f64, plateau: f64) -> Vec<FacePoint> {
     let level = |p: Vector2| {
         let local = view.frame.local(p);
@@ -164,8 +169,9 @@ fn face_points(view: &TipView, shape: TipDomainShape, radius: f64, plateau: f64)
     let mut points = vec![];
     for (k, w) in view.path.windows(2).enumerate() {
         let e = w[1] - w[0];
-        let left = turn_left(e.normalize());
-        let mut stops = vec![0.0];
+        // r_0 as a part of the first segment.
+        let hidden = if k == 0 { (TIP_SHARE * radius / e.norm()).min(0.25) } else { 0.0 };
+        let mut stops = vec![hidden];
         for limit in [plateau, 1.0] {
             if level(w[0]) < limit && level(w[1]) > limit {
                 stops.push(crossing(|t| level(w[0] + e * t) - limit));
@@ -174,18 +180,19 @@ fn face_points(view: &TipView, shape: TipDomainShape, radius: f64, plateau: f64)
         if level(w[1]) < 1.0 {
             stops.push(1.0);
         }
+        for &(u, wu) in rule.iter().filter(|_| k == 0) {
+            // With s = √r and u = s/s_0 - 1: 2 ∫ (f_0 + f_1 (2u - 1)) ds over u from -1 to 0, f_0 and f_1 from 0 to 1.
+            let share = hidden * (1.0 + u).powi(2);
+            let functional = 2.0 * (1.0 - 6.0 * (2.0 * u - 1.0));
+            let weight = wu * functional * (hidden * share).sqrt() * e.norm();
+            add_both(&mut points, w, share, weight);
+        }
         for (from, to) in stops.windows(2).map(|s| (s[0], s[1])).filter(|(from, to)| from < to) {
             for &(s, ws) in &rule {
-                // The energy goes as 1/√r at the tip: t = s² takes the root out.
-                let (share, slope) = if k == 0 && from == 0.0 { (s * s, 2.0 * s) } else { (s, 1.0) };
-                let position = w[0] + e * (from + (to - from) * share);
-                let at = level(position);
+                let share = from + (to - from) * s;
+                let at = level(w[0] + e * share);
                 let q = if at <= plateau { 1.0 } else { (1.0 - at) / (1.0 - plateau) };
-                let weight = q * ws * slope * (to - from) * e.norm();
-                let shift = SIGHT_SHIFT * (position - w[0]).norm().min((w[1] - position).norm());
-                for normal in [left, -left] {
-                    points.push(FacePoint { position, sight: position - normal * shift, normal, weight });
-                }
+                add_both(&mut points, w, share, q * ws * (to - from) * e.norm());
             }
         }
         if level(w[1]) >= 1.0 {
@@ -193,6 +200,17 @@ fn face_points(view: &TipView, shape: TipDomainShape, radius: f64, plateau: f64)
         }
     }
     points
+}
+
+/// Adds the points on both faces at a share of a segment.
+fn add_both(points: &mut Vec<FacePoint>, segment: &[Vector2], share: f64, weight: f64) {
+    let e = segment[1] - segment[0];
+    let left = turn_left(e.normalize());
+    let position = segment[0] + e * share;
+    let shift = SIGHT_SHIFT * e.norm() * share.min(1.0 - share);
+    for normal in [left, -left] {
+        points.push(FacePoint { position, sight: position - normal * shift, normal, weight });
+    }
 }
 
 /// The zero of a rising function in (0, 1), by bisection.

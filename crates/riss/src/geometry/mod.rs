@@ -5,6 +5,7 @@
 pub mod aabb;
 pub mod curve;
 pub mod obstacles;
+pub mod path_distance;
 pub mod polygon;
 pub mod predicates;
 pub mod tree;

@@ -1,10 +1,11 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
-//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`] and [`field_picture`] with `svg` and
+//! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`] and [`field_picture`] with `svg` and
 //! `contours` below them, [`whole_file`].
 
 mod color_map;
+pub mod comparison;
 mod contours;
 pub mod field_picture;
 pub mod fields;
@@ -16,6 +17,7 @@ mod svg;
 mod vtk;
 pub mod whole_file;
 
+pub use comparison::Comparison;
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
 pub use results::{Results, RunStatus, results_json, results_schema};

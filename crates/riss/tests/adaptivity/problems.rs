@@ -11,8 +11,9 @@ use std::sync::Arc;
 
 /// A free body under the tractions of an exact field on its whole boundary.
 pub fn pulled_by(field: Arc<dyn ExactField>, domain: Domain, material: Elasticity) -> Model {
+    let whole = all(&domain);
     let mut model = Model { material, rigid_motion: RigidMotion::MeanIsZero, ..Model::plain(domain) };
-    model.loads.push(BoundaryLoad { part: None, value: TractionValue::Exact(field.clone()) });
+    model.loads.push(BoundaryLoad { part: Some(whole), value: TractionValue::Exact(field.clone()) });
     model.exact = Some(field);
     model
 }
@@ -60,7 +61,7 @@ pub fn near_tip(k1: f64, k2: f64) -> Model {
 /// Lamé's ring under internal pressure, radii 1 and 2 [Timoshenko1970, art. 28].
 pub fn ring() -> Model {
     let hole = vec![Curve::circle(Vector2::zeros(), 1.0)];
-    let domain = Domain::new(vec![Curve::circle(Vector2::zeros(), 2.0)], vec![hole]);
+    let domain = with_parts(Domain::new(vec![Curve::circle(Vector2::zeros(), 2.0)], vec![hole]), &[]);
     pulled_by(Arc::new(Lame { pressure: 5.0 }), domain, MATERIAL)
 }
 
@@ -70,7 +71,7 @@ pub fn l_shape() -> Model {
     // Polygons run counterclockwise: from the corner to the right, around, and back from below.
     let outline: Vec<(f64, f64)> = corners.into_iter().rev().collect();
     let field: Arc<dyn ExactField> = Arc::new(Corner);
-    pulled_by(field, Domain::new(polygon(&outline), vec![]), MATERIAL)
+    pulled_by(field, with_parts(Domain::new(polygon(&outline), vec![]), &[]), MATERIAL)
 }
 
 /// `σ_r, σ_θ = A (1 ∓ 4/r²)`, `A = p/3`.
