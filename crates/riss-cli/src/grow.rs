@@ -5,8 +5,8 @@ use crate::results::{self, RunRecord};
 use crate::table::{self, number};
 use crate::{DONE, STOPPED};
 use riss::analysis::{
-    GrowthEnd, GrowthEndKind, GrowthSettings, GrowthState, Observer, RefinementRecord, Stage, StaticResult, StepRecord, TipStatus,
-    Warning, crack_growth,
+    GrowthEnd, GrowthEndKind, GrowthSettings, GrowthState, Observer, RefinementRecord, Stage, StaticResult, StepRecord,
+    TipStatus, Warning, crack_growth,
 };
 use riss::case::Case;
 use riss::output::{RunStatus, RunWriter};

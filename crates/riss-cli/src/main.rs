@@ -27,7 +27,10 @@ const DIFFERENT: u8 = 3;
 
 /// Cracks in solids with meshfree methods: stress intensity factors, J, T-stress and crack growth of a case file.
 #[derive(Parser)]
-#[command(version, after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage, 3 compared runs differ.")]
+#[command(
+    version,
+    after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage, 3 compared runs differ."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

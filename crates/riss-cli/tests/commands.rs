@@ -29,6 +29,7 @@ fn scratch(name: &str) -> PathBuf {
 fn help() {
     insta::assert_snapshot!("help", stdout(&root(), &["--help"]));
     insta::assert_snapshot!("help-run", stdout(&root(), &["run", "--help"]));
+    insta::assert_snapshot!("help-compare", stdout(&root(), &["compare", "--help"]));
     assert_eq!(riss(&root(), &["walk"]).status.code(), Some(2));
     assert_eq!(riss(&root(), &["run", "cases/shear-edge-crack/case.toml", "--threads", "0"]).status.code(), Some(2));
     // So many would take all memory.

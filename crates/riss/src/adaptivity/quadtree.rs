@@ -24,7 +24,11 @@ pub struct Square {
 impl Square {
     /// The four squares that it splits into.
     pub fn children(self) -> [Self; 4] {
-        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(a, b)| Self { level: self.level + 1, i: 2 * self.i + a, j: 2 * self.j + b })
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(a, b)| Self {
+            level: self.level + 1,
+            i: 2 * self.i + a,
+            j: 2 * self.j + b,
+        })
     }
 
     /// The square that it is a quarter of; a root has none.

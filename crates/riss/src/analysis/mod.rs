@@ -4,8 +4,8 @@ pub mod crack_growth;
 pub mod energy;
 pub mod fields;
 pub mod linear_static;
-pub mod refinement;
 pub mod record;
+pub mod refinement;
 pub mod settings;
 
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};

@@ -1,8 +1,8 @@
 //! Solves again and again, with finer nodes where the error is, until the accuracy that was asked for is met.
 //!
-//! The error bar of a stress intensity factor is its spread over the integration domains, or what the last refinement has
-//! changed, whichever is larger: as long as a refinement takes half of the error away or more, the change is no smaller
-//! than what is left.
+//! The error bar of a stress intensity factor is its spread over the integration domains, or what follows from the change
+//! in the last refinement, whichever is larger. If a refinement leaves the share ρ of an error, a change of Δ leaves
+//! `Δ ρ/(1-ρ)`. The factors converge no slower than the stress: ρ is that of its estimated error, the bar at least Δ.
 
 use super::energy::strain_energy;
 use super::linear_static::{Solved, discretize, discretize_at, solve_on};
@@ -46,6 +46,8 @@ pub fn solve_refined(
     Ok(Refined { discrete: solved.discrete, solution: solved.solution, refinements })
 }
 
+/// A refinement that leaves more of the error than this is taken to leave that much.
+const MOST_LEFT: f64 = 0.95;
 /// The factors of a tip that is loaded less than this part of the most loaded one are measured by that part.
 const SHADOW: f64 = 0.01;
 
@@ -123,11 +125,15 @@ fn record(
     let before = before.filter(|b| b.factors.len() == factors.len());
     let mut k_error = before.filter(|_| !factors.is_empty()).map(|_| 0.0f64);
     let largest = factors.iter().map(|[k1, k2]| k1.hypot(*k2)).fold(0.0, f64::max);
+    let per_change = before.map_or(1.0, |b| {
+        let left = (estimate.relative() / b.error_estimate).min(MOST_LEFT);
+        (left / (1.0 - left)).max(1.0)
+    });
     for (i, (tip, [k1, k2])) in tips(&mut solved.cracks).enumerate() {
         let Some(before) = before else { break };
         let [b1, b2] = before.factors[i];
         let change = (k1 - b1).abs().max((k2 - b2).abs());
-        let bar = tip.k_uncertainty.unwrap_or(0.0).max(change);
+        let bar = tip.k_uncertainty.unwrap_or(0.0).max(per_change * change);
         tip.k_uncertainty = Some(bar);
         k_error = k_error.map(|e| e.max(bar / k1.hypot(k2).max(SHADOW * largest)));
     }

@@ -49,9 +49,8 @@ fn stretch(path: &[Vector2], from: f64, to: f64) -> Vec<Vector2> {
 
 /// The distance from `other` of the point of `path` that is farthest from it.
 fn farthest(path: &[Vector2], other: &[Vector2]) -> f64 {
-    let samples = path
-        .windows(2)
-        .flat_map(|w| (0..=SAMPLES).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / SAMPLES as f64)));
+    let samples =
+        path.windows(2).flat_map(|w| (0..=SAMPLES).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / SAMPLES as f64)));
     samples.map(|p| nearest(p, other).0).fold(0.0, f64::max)
 }
 

@@ -161,3 +161,80 @@ fn between(way: &[Station], grown: f64) -> Option<Station> {
         uncertainty: p.uncertainty.max(q.uncertainty),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::{CrackRecord, StaticResult, StepRecord, TipRecord};
+    use crate::crack::{EndKind, TipFrame};
+    use crate::output::{RunInfo, RunStatus};
+
+    /// A run in which a crack grows along a path, its factors being functions of the x coordinate of the tip.
+    fn run(name: &str, path: &[(f64, f64)], factors: impl Fn(f64) -> (f64, f64)) -> Results {
+        let points: Vec<Vector2> = path.iter().map(|p| Vector2::new(p.0, p.1)).collect();
+        let step = |k: usize| {
+            let (k1, k2) = factors(points[k].x);
+            let frame = TipFrame { position: points[k], angle: 0.0 };
+            let tip = TipRecord {
+                k1: Some(k1),
+                k2: Some(k2),
+                k_uncertainty: Some(0.01),
+                ..TipRecord::unknown(End::End, frame)
+            };
+            let ends = [EndKind::Mouth, EndKind::Tip];
+            let crack = CrackRecord { name: name.into(), path: points[..=k].to_vec(), ends, tips: vec![tip] };
+            StaticResult::unsolved(StepRecord {
+                step: k - 1,
+                load_factor: 1.0,
+                cycles: None,
+                stability: None,
+                end: None,
+                cracks: vec![crack],
+                reactions: vec![],
+            })
+        };
+        let info = RunInfo {
+            title: "t".into(),
+            method: "m".into(),
+            status: RunStatus::Done,
+            wall_time_s: 0.0,
+            stage_time_s: vec![],
+            peak_memory_bytes: None,
+        };
+        let steps: Vec<StaticResult> = (1..points.len()).map(step).collect();
+        let results = steps.iter().map(|s| crate::output::results::StepResults::new(s, &[])).collect();
+        Results::of_steps(&info, steps.last().unwrap(), results)
+    }
+
+    #[test]
+    fn factors_are_compared_where_the_tips_have_grown_as_far() {
+        let a = run("c", &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)], |x| (10.0 * x, 0.0));
+        // Steps of half the length, K_II = 1 from x = 2 on, and one step less far.
+        let b =
+            run("c", &[(0.0, 0.1), (1.0, 0.1), (1.5, 0.1), (2.0, 0.1), (2.5, 0.1)], |x| (10.0 * x, (x - 1.5).max(0.0)));
+        let found = Comparison::new(&a, &b);
+        let crack = &found.cracks[0];
+        assert_eq!(crack.lengths, [3.0, 2.5]);
+        assert!((crack.path_distance - 0.1).abs() < 1e-12 && (crack.path_distance_relative - 0.1 / 3.0).abs() < 1e-12);
+        let tip = &crack.tips[0];
+        // At 1 nothing, at 2 K_II = 0.5 of 20; beyond 2.5 the second has not grown.
+        assert_eq!((tip.steps, tip.grown), (2, Some(1.0)));
+        assert!((tip.k_difference.unwrap() - 0.025).abs() < 1e-12);
+        assert!((tip.k_difference_mean.unwrap() - 0.0125).abs() < 1e-12);
+        assert!((tip.k_uncertainty.unwrap() - 0.01 / 20.0).abs() < 1e-12);
+        assert!(found.agrees(0.04, 0.026) && !found.agrees(0.03, 0.026) && !found.agrees(0.04, 0.024));
+        let same = Comparison::new(&a, &a);
+        assert!(same.agrees(0.0, 0.0) && same.cracks[0].tips[0].steps == 3);
+    }
+
+    #[test]
+    fn cracks_of_other_names_do_not_agree() {
+        let path = [(0.0, 0.0), (1.0, 0.0)];
+        let found = Comparison::new(&run("a", &path, |_| (1.0, 0.0)), &run("b", &path, |_| (1.0, 0.0)));
+        assert_eq!(
+            (found.only_in_first.as_slice(), found.only_in_second.as_slice()),
+            (&["a".into()][..], &["b".into()][..])
+        );
+        assert!(found.cracks.is_empty() && !found.agrees(1.0, 1.0));
+    }
+}

@@ -3,7 +3,9 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::RunInfo;
-use crate::analysis::{CrackRecord, GrowthEnd, RefinementRecord, Stability, StaticResult, StepRecord, TipRecord, TipStatus};
+use crate::analysis::{
+    CrackRecord, GrowthEnd, RefinementRecord, Stability, StaticResult, StepRecord, TipRecord, TipStatus,
+};
 use crate::crack::{End, EndKind};
 use crate::math::Vector2;
 use schemars::JsonSchema;
@@ -138,7 +140,7 @@ pub struct TipResults {
     /// Mode II stress intensity factor [stress·√length], positive if the face to the left slides ahead.
     #[serde(rename = "K_II")]
     pub k2: Option<f64>,
-    /// Spread of both over the integration domains, at least what the last refinement changed [stress·√length].
+    /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
     /// J-integral [stress·length].

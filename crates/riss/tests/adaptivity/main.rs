@@ -1,5 +1,6 @@
 //! Error estimates and refinement against exact fields.
 
+mod accuracy;
 #[path = "../bodies/mod.rs"]
 mod bodies;
 mod effectivity;

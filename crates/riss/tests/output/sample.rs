@@ -1,7 +1,8 @@
 //! A result made from an exact field: a square with an edge crack up to its middle.
 
 use riss::analysis::{
-    CrackFaces, CrackRecord, Fields, NodeRecord, RefinementRecord, StaticResult, StepRecord, TipRecord, TipStatus, Warning,
+    CrackFaces, CrackRecord, Fields, NodeRecord, RefinementRecord, StaticResult, StepRecord, TipRecord, TipStatus,
+    Warning,
 };
 use riss::crack::{End, EndKind};
 use riss::exact::{CrackTipField, ExactField};

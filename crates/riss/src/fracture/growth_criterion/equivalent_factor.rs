@@ -51,7 +51,9 @@ impl EquivalentFactor {
 
 #[cfg(test)]
 mod tests {
-    use super::EquivalentFactor::{ConfigurationalForce, EnergyReleaseRate, MaximumCircumferentialStress, ModeI, Tanaka};
+    use super::EquivalentFactor::{
+        ConfigurationalForce, EnergyReleaseRate, MaximumCircumferentialStress, ModeI, Tanaka,
+    };
     use super::*;
 
     const ALL: [EquivalentFactor; 5] =

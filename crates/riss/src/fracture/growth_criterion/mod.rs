@@ -167,7 +167,8 @@ mod tests {
                 let [k1, k2, t] = [1, 9, 81].map(|stride| numbers[i / stride % numbers.len()]);
                 for (a, b) in sides {
                     let found = angle(criterion, a * k1, k2, b * t);
-                    let right = if criterion == GrowthCriterion::ConfigurationalForce && a < 0.0 { FRAC_PI_4 } else { 0.0 };
+                    let right =
+                        if criterion == GrowthCriterion::ConfigurationalForce && a < 0.0 { FRAC_PI_4 } else { 0.0 };
                     assert!((-std::f64::consts::PI..=right).contains(&found), "{criterion:?} {k1} {k2} {t}: {found}");
                 }
             }

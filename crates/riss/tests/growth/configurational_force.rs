@@ -1,0 +1,103 @@
+//! Growth along the configurational force: what it says beside the factors, and where it leads.
+
+use crate::bodies::{BOTH, body, crack, hold, polygon, rectangle, with_parts};
+use crate::steps::grow;
+use riss::analysis::crack_growth::settings::IncrementControl;
+use riss::analysis::{GrowthSettings, Settings};
+use riss::crack::EndKind::{Mouth, Tip};
+use riss::fracture::{GrowthCriterion, force_of_factors};
+use riss::geometry::path_distance::path_distance;
+use riss::material::PlaneState;
+use riss::math::Vector2;
+use riss::model::{BoundaryLoad, Direction, Domain, Model, TractionValue};
+
+fn along_the_force(increment: f64, steps: usize) -> GrowthSettings {
+    let criterion = GrowthCriterion::ConfigurationalForce;
+    GrowthSettings { increment: Some(increment), steps, criterion, ..GrowthSettings::default() }
+}
+
+/// Arms of 1×1 around a center of 1×1, a crack of 0.2 from the lower right corner into the center [CPM, section 4.4]; top
+/// pulled, the other ends held normal to themselves.
+fn cruciform() -> Model {
+    let corners = [
+        (1., 0.),
+        (2., 0.),
+        (2., 1.),
+        (3., 1.),
+        (3., 2.),
+        (2., 2.),
+        (2., 3.),
+        (1., 3.),
+        (1., 2.),
+        (0., 2.),
+        (0., 1.),
+        (1., 1.),
+    ];
+    let names = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11"];
+    let mut model = body(with_parts(Domain::new(polygon(&corners), vec![]), &names), PlaneState::Strain);
+    for (part, direction) in [(0, Direction::Y), (3, Direction::X), (9, Direction::X)] {
+        hold(&mut model, part, direction, 0.0);
+    }
+    let value = TractionValue::Components([0.0.into(), 100.0.into()]);
+    model.loads.push(BoundaryLoad { part: Some(6), value });
+    let side = 0.2 * 0.5f64.sqrt();
+    model.cracks.push(crack(&[(2.0, 1.0), (2.0 - side, 1.0 + side)], [Mouth, Tip]));
+    model
+}
+
+/// `g = ((K_I² + K_II²)/E', -2 K_I K_II/E')` along the path within 1 % [CPM, Eq. 21, section 4.4].
+#[test]
+fn force_is_that_of_the_factors_along_the_path() {
+    let model = cruciform();
+    let (steps, _) = grow(&model, &Settings::default(), &along_the_force(0.05, 8));
+    for k in 0..=8 {
+        let tip = steps.tip(k, 0);
+        let force = tip.configurational_force.expect("evaluated");
+        let expected = force_of_factors(tip.k1.expect("evaluated"), tip.k2.expect("evaluated"), &model.material);
+        assert!((force - expected).norm() < 0.01 * expected.norm(), "step {k}: {force} {expected}");
+        assert!((tip.j.expect("evaluated") / force.x - 1.0).abs() < 0.01, "step {k}: {force}, J = {:?}", tip.j);
+    }
+}
+
+/// A square clamped below and shifted above, a crack to its middle: pure mode II [CPM, section 4.3].
+fn sheared_square() -> Model {
+    let mut model = body(rectangle((0.0, -0.5), (1.0, 0.5)), PlaneState::Stress);
+    for direction in BOTH {
+        hold(&mut model, 0, direction, 0.0);
+        hold(&mut model, 2, direction, if direction == Direction::X { 0.02 } else { 0.0 });
+    }
+    model.cracks.push(crack(&[(0.0, 0.0), (0.5, 0.0)], [Mouth, Tip]));
+    model
+}
+
+/// The force starts straight on, and its path comes to that of the hoop stress as increments shrink [CPM, Fig. 13].
+#[test]
+fn path_of_the_force_comes_to_that_of_the_hoop_stress() {
+    let model = sheared_square();
+    let run = |growth: GrowthSettings| grow(&model, &Settings::default(), &growth).0;
+    let hoop = run(GrowthSettings { increment: Some(0.025), steps: 10, ..GrowthSettings::default() });
+    let hoop = &hoop.cracks()[0].vertices;
+    let distances = [(0.05, 7), (0.025, 13)].map(|(increment, steps)| {
+        let found = run(along_the_force(increment, steps));
+        let first = found.tip(0, 0).kink_angle.expect("evaluated");
+        assert!(first.abs() < 0.02, "{first}");
+        path_distance(&found.cracks()[0].vertices, hoop)
+    });
+    // Proportional to the increment, with a margin.
+    assert!(distances[1] < 0.7 * distances[0], "{distances:?}");
+    let control = IncrementControl::HalvedOnTurns { angle_deg: 5.0 };
+    let found = run(GrowthSettings { control, ..along_the_force(0.025, 30) });
+    let path = &found.cracks()[0].vertices;
+    assert!(path_distance(path, hoop) < 0.04 * 0.5, "{}", path_distance(path, hoop));
+    // The slope near 70°, of [CPM, section 4.3], where the path has turned.
+    let (a, b) = (at_height(path, -0.05), at_height(path, -0.1));
+    let slope = 0.05f64.atan2(b.x - a.x).to_degrees();
+    assert!((60.0..75.0).contains(&slope), "{slope}");
+}
+
+/// Where a path first comes to a height.
+fn at_height(path: &[Vector2], y: f64) -> Vector2 {
+    let w = path.windows(2).find(|w| (w[0].y - y) * (w[1].y - y) <= 0.0 && w[0].y != w[1].y);
+    let w = w.unwrap_or_else(|| panic!("the path does not come to {y}: {path:?}"));
+    w[0] + (w[1] - w[0]) * ((y - w[0].y) / (w[1].y - w[0].y))
+}
