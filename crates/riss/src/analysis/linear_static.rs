@@ -211,7 +211,14 @@ fn evaluate_tip(
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
     record.j = Some(mean(|t| t.j));
     record.t_stress = Some(mean(|t| t.t_stress));
-    let forces = configurational_forces(&view, &radii, &settings.fracture, &model.material, body_force, &field)?;
+    let forces = configurational_forces(
+        &view,
+        &view.clear_of_kinks(&radii),
+        &settings.fracture,
+        &model.material,
+        body_force,
+        &field,
+    )?;
     let force = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>() / forces.len() as f64;
     record.configurational_force = Some(force);
     record.status = if k1 > 0.0 || k1.abs() < 1e-6 * k2.abs() { TipStatus::Stationary } else { TipStatus::Closed };

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 /// Points on each piece of the crack faces.
 const FACE_POINTS: usize = 24;
 /// Part of the radius in which the energy on the faces is extrapolated.
-const TIP_SHARE: f64 = 1.0 / 16.0;
+const TIP_SHARE: f64 = 1.0 / 9.0;
 
 /// The configurational force from one domain or outline, in the tip frame: ahead, and to the left.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

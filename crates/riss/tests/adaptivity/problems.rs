@@ -96,7 +96,7 @@ impl ExactField for Lame {
     }
 }
 
-/// The opening field at a corner of 270° of material [SzaboBabuska1991, section 10.2], whose sides are free; the corner is
+/// The opening field at a corner of 270° of material [SzaboBabuska1991], whose sides are free; the corner is
 /// at the origin, the material around the direction of 135°.
 #[derive(Debug)]
 struct Corner;

@@ -49,8 +49,8 @@ fn cruciform() -> Model {
 #[test]
 fn force_is_that_of_the_factors_along_the_path() {
     let model = cruciform();
-    let (steps, _) = grow(&model, &Settings::default(), &along_the_force(0.05, 8));
-    for k in 0..=8 {
+    let (steps, _) = grow(&model, &Settings::default(), &along_the_force(0.05, 6));
+    for k in 0..=6 {
         let tip = steps.tip(k, 0);
         let force = tip.configurational_force.expect("evaluated");
         let expected = force_of_factors(tip.k1.expect("evaluated"), tip.k2.expect("evaluated"), &model.material);
@@ -59,14 +59,15 @@ fn force_is_that_of_the_factors_along_the_path() {
     }
 }
 
-/// A square clamped below and shifted above, a crack to its middle: pure mode II [CPM, section 4.3].
+/// A square clamped below and shifted above, a crack to its middle: pure mode II [CPM, section 4.3]. The crack leans by a
+/// 250th, so that it turns to the side on which it opens, and not by chance to the other.
 fn sheared_square() -> Model {
     let mut model = body(rectangle((0.0, -0.5), (1.0, 0.5)), PlaneState::Stress);
     for direction in BOTH {
         hold(&mut model, 0, direction, 0.0);
         hold(&mut model, 2, direction, if direction == Direction::X { 0.02 } else { 0.0 });
     }
-    model.cracks.push(crack(&[(0.0, 0.0), (0.5, 0.0)], [Mouth, Tip]));
+    model.cracks.push(crack(&[(0.0, 0.0), (0.5, -0.002)], [Mouth, Tip]));
     model
 }
 
@@ -80,7 +81,7 @@ fn path_of_the_force_comes_to_that_of_the_hoop_stress() {
     let distances = [(0.05, 7), (0.025, 13)].map(|(increment, steps)| {
         let found = run(along_the_force(increment, steps));
         let first = found.tip(0, 0).kink_angle.expect("evaluated");
-        assert!(first.abs() < 0.02, "{first}");
+        assert!(first.abs() < 0.03, "{first}");
         path_distance(&found.cracks()[0].vertices, hoop)
     });
     // Proportional to the increment, with a margin.
@@ -88,7 +89,10 @@ fn path_of_the_force_comes_to_that_of_the_hoop_stress() {
     let control = IncrementControl::HalvedOnTurns { angle_deg: 5.0 };
     let found = run(GrowthSettings { control, ..along_the_force(0.025, 30) });
     let path = &found.cracks()[0].vertices;
-    assert!(path_distance(path, hoop) < 0.04 * 0.5, "{}", path_distance(path, hoop));
+    for y in [-0.1, -0.15, -0.2] {
+        let apart = at_height(path, y).x - at_height(hoop, y).x;
+        assert!(apart.abs() < 0.04, "{apart} at {y}");
+    }
     // The slope near 70°, of [CPM, section 4.3], where the path has turned.
     let (a, b) = (at_height(path, -0.05), at_height(path, -0.1));
     let slope = 0.05f64.atan2(b.x - a.x).to_degrees();
