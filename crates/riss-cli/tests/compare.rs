@@ -42,7 +42,7 @@ fn scratch(name: &str) -> PathBuf {
 fn a_case_agrees_with_its_own_results() {
     let folder = scratch("compare-same");
     assert_eq!(riss(&folder, &["run", "case.toml", "--out", "a", "-q"]).status.code(), Some(0));
-    let output = riss(&folder, &["compare", "case.toml", "a", "--K", "0", "--path", "0", "-q"]);
+    let output = riss(&folder, &["compare", "case.toml", "a", "--K", "1e-9", "--path", "1e-9", "-q"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(output.status.code(), Some(0), "{text}");
     assert!(text.contains("path distance") && text.contains("crack-1  end        3"), "{text}");
@@ -51,19 +51,24 @@ fn a_case_agrees_with_its_own_results() {
 }
 
 #[test]
-fn another_criterion_differs_and_says_by_how_much() {
-    let folder = scratch("compare-criteria");
-    let criterion = "growth.criterion=configurational-force";
-    let arguments = ["compare", "case.toml", "case.toml", "--set", criterion, "-q", "--json", "--path", "0.1"];
+fn another_increment_differs_and_says_by_how_much() {
+    let folder = scratch("compare-increments");
+    let increment = "growth.increment=0.1";
+    let arguments = ["compare", "case.toml", "case.toml", "--set", increment, "-q", "--json", "--path", "0.01"];
     let output = riss(&folder, &arguments);
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let crack = &value["cracks"][0];
-    let distance = crack["path_distance"].as_f64().expect("a number");
-    // Two increments of 0.2 in directions that differ.
-    assert!(distance > 1e-3 && distance < 0.2, "{distance}");
-    assert!((crack["lengths"][0].as_f64().expect("a number") - 1.9).abs() < 1e-9);
-    assert_eq!(crack["tips"][0]["steps"], 3);
+    let number = |v: &Value| v.as_f64().expect("a number");
+    // The second turn comes after half the way; two increments make 0.4 and 0.2.
+    let distance = number(&crack["path_distance"]);
+    assert!(distance > 2e-4 && distance < 0.05, "{distance}");
+    for (length, expected) in [(&crack["lengths"][0], 1.9), (&crack["lengths"][1], 1.7)] {
+        assert!((number(length) - expected).abs() < 1e-9, "{length}");
+    }
+    // Where both have not grown at all, and by 0.2.
+    assert_eq!(crack["tips"][0]["steps"], 2);
+    assert!(number(&crack["tips"][0]["K_difference"]) < 0.05);
 }
 
 #[test]

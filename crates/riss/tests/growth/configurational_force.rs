@@ -5,7 +5,7 @@ use crate::steps::grow;
 use riss::analysis::crack_growth::settings::IncrementControl;
 use riss::analysis::{GrowthSettings, Settings};
 use riss::crack::EndKind::{Mouth, Tip};
-use riss::fracture::{GrowthCriterion, force_of_factors};
+use riss::fracture::{FaceTerm, GrowthCriterion, force_of_factors};
 use riss::geometry::path_distance::path_distance;
 use riss::material::PlaneState;
 use riss::math::Vector2;
@@ -75,7 +75,10 @@ fn sheared_square() -> Model {
 #[test]
 fn path_of_the_force_comes_to_that_of_the_hoop_stress() {
     let model = sheared_square();
-    let run = |growth: GrowthSettings| grow(&model, &Settings::default(), &growth).0;
+    let mut settings = Settings::default();
+    // As in the paper: in mode II both faces hold much energy, whose difference is noise.
+    settings.fracture.crack_faces = FaceTerm::LeftOut;
+    let run = |growth: GrowthSettings| grow(&model, &settings, &growth).0;
     let hoop = run(GrowthSettings { increment: Some(0.025), steps: 10, ..GrowthSettings::default() });
     let hoop = &hoop.cracks()[0].vertices;
     let distances = [(0.05, 7), (0.025, 13)].map(|(increment, steps)| {
