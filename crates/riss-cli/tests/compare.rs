@@ -45,7 +45,7 @@ fn a_case_agrees_with_its_own_results() {
     let output = riss(&folder, &["compare", "case.toml", "a", "--K", "1e-9", "--path", "1e-9", "-q"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(output.status.code(), Some(0), "{text}");
-    assert!(text.contains("path distance") && text.contains("crack-1  end        3"), "{text}");
+    assert!(text.contains("path distance") && text.contains("crack-1  end      3"), "{text}");
     // Nothing is written beside the results that were there.
     assert_eq!(std::fs::read_dir(&folder).expect("there").count(), 2);
 }

