@@ -72,8 +72,8 @@ mod tests {
         check_distance(&line, &line, 0.0);
         check_distance(&[(0.0, 0.3), (4.0, 0.3)], &line, 0.3);
         check_distance(&[(0.0, 0.0), (1.9, 0.0), (2.0, 0.7), (2.1, 0.0), (4.0, 0.0)], &line, 0.7);
-        // 0 at the left, 1 at the right.
-        check_distance(&[(0.0, 0.0), (4.0, 1.0)], &line, 1.0);
+        // The slanted line is cut off beside the end of the other, which lies 4/√17 from it.
+        check_distance(&[(0.0, 0.0), (4.0, 1.0)], &line, 4.0 / 17.0f64.sqrt());
     }
 
     #[test]
