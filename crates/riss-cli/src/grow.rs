@@ -5,8 +5,8 @@ use crate::results::{self, RunRecord};
 use crate::table::{self, number};
 use crate::{DONE, STOPPED};
 use riss::analysis::{
-    GrowthEnd, GrowthEndKind, GrowthSettings, GrowthState, Observer, Stage, StaticResult, StepRecord, TipStatus,
-    Warning, crack_growth,
+    GrowthEnd, GrowthEndKind, GrowthSettings, GrowthState, Observer, RefinementRecord, Stage, StaticResult, StepRecord,
+    TipStatus, Warning, crack_growth,
 };
 use riss::case::Case;
 use riss::output::{RunStatus, RunWriter};
@@ -104,6 +104,10 @@ impl Observer for Watch<'_> {
 
     fn warning(&mut self, warning: &Warning) {
         self.progress.warning(warning);
+    }
+
+    fn refinement(&mut self, record: &RefinementRecord) {
+        self.progress.refinement(record);
     }
 
     fn wants_fields(&self, _step: usize) -> bool {

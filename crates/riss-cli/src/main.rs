@@ -1,6 +1,7 @@
-//! The riss program: `run`, `check`, `report`, `export`, `shape`, `schema`, `new`.
+//! The riss program: `run`, `check`, `compare`, `report`, `export`, `shape`, `schema`, `new`.
 
 mod check;
+mod compare;
 mod desktop;
 mod diagnostics;
 mod export;
@@ -25,10 +26,15 @@ const DONE: u8 = 0;
 const STOPPED: u8 = 1;
 /// The case or the command line is wrong.
 const BAD_CASE: u8 = 2;
+/// Two runs differ by more than was allowed.
+const DIFFERENT: u8 = 3;
 
 /// Cracks in solids with meshfree methods: stress intensity factors, J, T-stress and crack growth of a case file.
 #[derive(Parser)]
-#[command(version, after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage.")]
+#[command(
+    version,
+    after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage, 3 compared runs differ."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -40,6 +46,8 @@ enum Command {
     Run(run::RunArguments),
     /// Reads and checks a case without running it
     Check(check::CheckArguments),
+    /// Says how far the crack paths and stress intensity factors of two runs are apart
+    Compare(compare::CompareArguments),
     /// Makes report.html again from a folder of results
     Report(report::ReportArguments),
     /// Writes the cracks or their stress intensity factors for another program
@@ -61,6 +69,7 @@ fn main() -> ExitCode {
     let code = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
         Command::Report(arguments) => report::write(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Shape(arguments) => shape::shape(&arguments),

@@ -1,7 +1,7 @@
 //! How far an analysis is, and how long its stages take.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use riss::analysis::{Observer, Stage, Warning};
+use riss::analysis::{Observer, RefinementRecord, Stage, Warning};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -83,6 +83,15 @@ impl Observer for Progress {
             Display::Nothing => {}
         }
         self.current = Some((stage, Instant::now()));
+    }
+
+    fn refinement(&mut self, record: &RefinementRecord) {
+        let text = crate::table::refinement_line(record);
+        match &self.display {
+            Display::Bar(bar) => bar.println(text),
+            Display::Lines => eprintln!("{text}"),
+            Display::Nothing => {}
+        }
     }
 
     fn warning(&mut self, warning: &Warning) {

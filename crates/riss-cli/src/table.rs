@@ -1,6 +1,6 @@
 //! Results on the terminal.
 
-use riss::analysis::{StaticResult, TipRecord};
+use riss::analysis::{RefinementRecord, StaticResult, TipRecord};
 use std::fmt::Write;
 
 /// Tips, reactions and warnings as text.
@@ -20,8 +20,25 @@ pub fn summary(result: &StaticResult) -> String {
     if let Some(error) = result.energy_error {
         writeln!(text, "\nerror in the energy norm: {:.4} %", 100.0 * error).expect("a string takes all");
     }
+    if let Some(last) = result.refinements.last() {
+        writeln!(text, "\nafter {} refinements: {}", result.refinements.len() - 1, refinement_line(last))
+            .expect("a string takes all");
+    }
     for warning in &result.warnings {
         writeln!(text, "\nwarning: {}", warning.message).expect("a string takes all");
+    }
+    text
+}
+
+/// A solution on the way to an accuracy.
+pub fn refinement_line(record: &RefinementRecord) -> String {
+    let percent = |v: f64| format!("{} %", number(100.0 * v));
+    let mut text = format!("{} nodes, stress good to {}", record.n_nodes, percent(record.error_estimate));
+    if let Some(error) = record.energy_error {
+        text += &format!(" (in truth {})", percent(error));
+    }
+    if let Some(error) = record.k_error {
+        text += &format!(", K good to {}", percent(error));
     }
     text
 }
@@ -51,7 +68,7 @@ fn tip_row(name: &str, tip: &TipRecord) -> Vec<String> {
 }
 
 /// Columns of equal width, right-aligned but for those in `left`.
-fn aligned(head: &[&str], rows: &[Vec<String>], left: &[usize]) -> String {
+pub fn aligned(head: &[&str], rows: &[Vec<String>], left: &[usize]) -> String {
     let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).chain([head[k].len()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..head.len()).map(width).collect();
     let head: Vec<String> = head.iter().map(|s| s.to_string()).collect();

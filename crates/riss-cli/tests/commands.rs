@@ -31,6 +31,7 @@ fn help() {
     insta::assert_snapshot!("help-run", stdout(&root(), &["run", "--help"]));
     insta::assert_snapshot!("help-report", stdout(&root(), &["report", "--help"]));
     insta::assert_snapshot!("help-export", stdout(&root(), &["export", "--help"]));
+    insta::assert_snapshot!("help-compare", stdout(&root(), &["compare", "--help"]));
     assert_eq!(riss(&root(), &["walk"]).status.code(), Some(2));
     assert_eq!(riss(&root(), &["run", "cases/shear-edge-crack/case.toml", "--threads", "0"]).status.code(), Some(2));
     // So many would take all memory.

@@ -32,6 +32,8 @@ pub mod system;
 
 pub mod fracture;
 
+pub mod adaptivity;
+
 pub mod analysis;
 
 pub mod case;

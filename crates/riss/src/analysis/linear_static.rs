@@ -4,17 +4,21 @@ use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
 use super::fields::sample_fields;
 use super::record::*;
+use super::refinement::refine;
 use super::settings::Settings;
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{CrackSmoothing, ShapeFunctions, Surroundings};
 use crate::crack::TipId;
 use crate::error::{Error, Result};
-use crate::fracture::{FacePressure, ForceAt, SolutionField, TipIntegrals, TipLoads, TipView, tip_integrals};
+use crate::fracture::{
+    FacePressure, ForceAt, SolutionField, TipIntegrals, TipLoads, TipView, configurational_forces, tip_integrals,
+};
 use crate::geometry::predicates::distance_to_segment;
 use crate::math::Vector2;
 use crate::model::{FieldPoint, Model, RigidMotion};
-use crate::nodes::generate;
+use crate::nodes::spacing::SpacingField;
 use crate::nodes::triangulation::SIGHT_SHIFT;
+use crate::nodes::{generate, generate_at};
 use crate::system::crack_faces::contact_pressure;
 use crate::system::solve::UNBALANCED;
 use crate::system::{ConstraintMethod, Discretization, Solution, assemble};
@@ -46,7 +50,13 @@ pub(super) fn solve_step(
     observer: &mut dyn Observer,
 ) -> Result<StaticResult> {
     let mut warnings = Warnings::new(observer);
-    let discrete = discretize(model, settings, warnings.observer)?;
+    let (Solved { discrete, solution, method, cracks }, refinements) = match &settings.accuracy {
+        Some(accuracy) => refine(model, settings, accuracy, &mut warnings)?,
+        None => {
+            let discrete = discretize(model, settings, warnings.observer)?;
+            (solve_on(model, settings, discrete, &mut warnings)?, vec![])
+        }
+    };
     if let CrackSmoothing::Transparency { .. } = settings.approximation.resolved_smoothing().cracks() {
         let n = nodes_too_near(model, &discrete);
         if n > 0 {
@@ -56,15 +66,6 @@ pub(super) fn solve_step(
             ));
         }
     }
-    let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
-    if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
-        warnings.add(format!(
-            "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
-            100.0 * solution.imbalance
-        ));
-    }
-    warnings.observer.stage(Stage::Fracture);
-    let cracks = evaluate_cracks(model, settings, &discrete, &solution, &mut warnings)?;
     warnings.observer.stage(Stage::Fields);
     let energy = strain_energy(model, &discrete, &solution)?;
     let fields = match warnings.observer.wants_fields(step) {
@@ -87,6 +88,7 @@ pub(super) fn solve_step(
         strain_energy: energy.strain_energy * model.thickness,
         energy_error: energy.relative_error,
         residual: solution.residual,
+        refinements,
         fields,
         nodes: node_records.collect(),
         integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
@@ -111,6 +113,34 @@ fn nodes_too_near(model: &Model, discrete: &Discretization) -> usize {
     standing.filter(|(copy, node)| is_near(*copy, *node)).count()
 }
 
+/// A solution, and the cracks in it.
+pub(super) struct Solved {
+    pub discrete: Discretization,
+    pub solution: Solution,
+    /// As it was used.
+    pub method: ConstraintMethod,
+    pub cracks: Vec<CrackRecord>,
+}
+
+/// Solves on given nodes and evaluates every tip.
+pub(super) fn solve_on(
+    model: &Model,
+    settings: &Settings,
+    discrete: Discretization,
+    warnings: &mut Warnings,
+) -> Result<Solved> {
+    let (solution, method) = solve_once(model, settings, &discrete, warnings)?;
+    if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
+        warnings.add(format!(
+            "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
+            100.0 * solution.imbalance
+        ));
+    }
+    warnings.observer.stage(Stage::Fracture);
+    let cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
+    Ok(Solved { discrete, solution, method, cracks })
+}
+
 /// Nodes, supports, cells and neighbor lists of a model.
 ///
 /// # Errors
@@ -118,6 +148,22 @@ fn nodes_too_near(model: &Model, discrete: &Discretization) -> usize {
 pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
     let layered = generate(model, &settings.nodes)?;
+    observer.stage(Stage::Discretization);
+    Discretization::new(model, layered, &settings.approximation, &settings.integration)
+}
+
+/// The same with irregular nodes at a given spacing.
+///
+/// # Errors
+/// [`Error::NodeGeneration`] and [`Error::SingularMomentMatrix`].
+pub fn discretize_at(
+    model: &Model,
+    settings: &Settings,
+    spacing: &SpacingField,
+    observer: &mut dyn Observer,
+) -> Result<Discretization> {
+    observer.stage(Stage::Nodes);
+    let layered = generate_at(model, spacing, settings.nodes.star.as_ref())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
@@ -221,6 +267,14 @@ fn evaluate_tip(
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
     record.j = Some(mean(|t| t.j));
     record.t_stress = Some(mean(|t| t.t_stress));
+    // What it takes on loaded faces is not integrated.
+    if face_pressure.is_none() {
+        let clear = view.clear_of_kinks(&radii);
+        let forces =
+            configurational_forces(&view, &clear, &settings.fracture, &model.material, loads.body_force, &field)?;
+        let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
+        record.configurational_force = Some(sum / forces.len() as f64);
+    }
     record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)

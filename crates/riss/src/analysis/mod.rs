@@ -7,10 +7,12 @@ pub mod fields;
 pub mod linear_static;
 pub mod node_function;
 pub mod record;
+pub mod refinement;
 pub mod settings;
 
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
 pub use node_function::{NodeFunction, nearest_node, sample_node_function};
 pub use record::*;
+pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;

@@ -44,6 +44,8 @@ pub trait Observer {
     fn stage(&mut self, _stage: Stage) {}
     /// Something the user should know.
     fn warning(&mut self, _warning: &Warning) {}
+    /// A solution on the way to the accuracy that was asked for is complete.
+    fn refinement(&mut self, _record: &RefinementRecord) {}
     /// Whether fields shall be sampled in a step: they cost about as much as assembly.
     fn wants_fields(&self, _step: usize) -> bool {
         true
@@ -130,7 +132,7 @@ pub struct TipRecord {
     pub k1: Option<f64>,
     /// Mode II stress intensity factor [stress·√length].
     pub k2: Option<f64>,
-    /// Spread of both over the integration domains [stress·√length].
+    /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
     pub k_uncertainty: Option<f64>,
     /// J-integral [stress·length].
     pub j: Option<f64>,
@@ -263,6 +265,21 @@ impl TipStatus {
     }
 }
 
+/// One of the solutions on the way to the accuracy that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefinementRecord {
+    /// Number of nodes.
+    pub n_nodes: usize,
+    /// Estimated error of the stress in the energy norm, over the norm of the stress.
+    pub error_estimate: f64,
+    /// The error itself, where an exact field is known.
+    pub energy_error: Option<f64>,
+    /// Largest error bar of the stress intensity factors over their magnitude; unknown in the first solution.
+    pub k_error: Option<f64>,
+    /// `K_I` and `K_II` of every tip that has them, in order [stress·√length].
+    pub factors: Vec<[f64; 2]>,
+}
+
 /// Everything a static analysis finds.
 #[derive(Clone, Debug)]
 pub struct StaticResult {
@@ -280,6 +297,8 @@ pub struct StaticResult {
     pub energy_error: Option<f64>,
     /// Relative residual of the linear system.
     pub residual: f64,
+    /// Solutions on the way to the accuracy that was asked for, this one last; none without such a wish.
+    pub refinements: Vec<RefinementRecord>,
     /// Fields over the body.
     pub fields: Fields,
     /// Positions of the nodes.
@@ -301,6 +320,7 @@ impl StaticResult {
             strain_energy: f64::NAN,
             energy_error: None,
             residual: f64::NAN,
+            refinements: vec![],
             fields: Fields::default(),
             nodes: vec![],
             integration_points: vec![],

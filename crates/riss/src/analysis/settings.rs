@@ -1,5 +1,6 @@
 //! All numerical choices of an analysis.
 
+use crate::adaptivity::AccuracySettings;
 use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
@@ -21,4 +22,6 @@ pub struct Settings {
     pub solver: LinearSolver,
     /// Fracture quantities.
     pub fracture: FractureSettings,
+    /// Accuracy to refine for; without it, the nodes are as placed.
+    pub accuracy: Option<AccuracySettings>,
 }

@@ -1,17 +1,19 @@
 //! Fracture quantities at crack tips. Moves no crack.
 //!
-//! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] evaluates them; [`growth_criterion`] tells which
-//! way the tip would grow, [`fatigue`] how far in a load cycle.
+//! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] and [`configurational_force`] evaluate them;
+//! [`growth_criterion`] tells which way the tip would grow, [`fatigue`] how far in a load cycle.
 
+pub mod configurational_force;
 pub mod fatigue;
 pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;
 
+pub use configurational_force::{ConfigurationalForce, configurational_forces, force_of_factors};
 pub use growth_criterion::{EquivalentFactor, GrowthCriterion, TipDriving, kinked_factors};
 pub use interaction_integral::{
     FacePressure, ForceAt, GradientField, PressureAt, SolutionField, TipIntegrals, TipLoads, tip_integrals,
 };
-pub use settings::{FractureSettings, JIntegral, TipDomainShape};
+pub use settings::{FaceTerm, FractureSettings, JIntegral, TipDomainShape};
 pub use tip_domain::TipView;

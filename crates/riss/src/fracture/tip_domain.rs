@@ -4,7 +4,7 @@ use super::settings::TipDomainShape;
 use crate::crack::{TipFrame, TipId};
 use crate::error::{Error, Result};
 use crate::math::gauss_legendre::gauss_legendre;
-use crate::math::{Vector2, turn_left};
+use crate::math::{Vector2, cross, turn_left};
 use crate::model::Model;
 use crate::nodes::spacing::free_radius;
 use crate::nodes::triangulation::SIGHT_SHIFT;
@@ -17,6 +17,14 @@ pub const PLATEAU: f64 = 0.35;
 /// Points across the ring and around it.
 const RADIAL_POINTS: usize = 12;
 const ANGULAR_POINTS: usize = 96;
+/// Pieces of an octant of a contour: nothing is averaged across it, so it sees each node.
+const CONTOUR_PANELS: usize = 4;
+/// A turn of the crack that disturbs the fields beside it [rad].
+const SHARP_TURN: f64 = 0.2;
+/// Radius of a domain over the distance of a kink that it leaves out (squares reach a little beyond), and how far it is shrunk
+/// for that at most.
+const KINK_CLEARANCE: f64 = 0.9;
+const LEAST_SHRINKING: f64 = 1.0 / 6.0;
 /// Points on each stretch of a crack face along which q is smooth.
 const FACE_POINTS: usize = 16;
 
@@ -147,6 +155,19 @@ impl TipView {
         Ok((shrunk, Some(note)))
     }
 
+    /// The radii, shrunk until no sharp kink of the crack lies within them, unless that is next to the tip: what the faces
+    /// hold near a kink is poor, and counts in full for the configurational force.
+    pub fn clear_of_kinks(&self, radii: &[f64]) -> Vec<f64> {
+        let largest = radii.iter().copied().fold(0.0, f64::max);
+        let kink = self.path.windows(3).find_map(|w| {
+            let (a, b) = (w[1] - w[0], w[2] - w[1]);
+            let is_sharp = cross(a, b).abs().atan2(a.dot(&b)) > SHARP_TURN;
+            is_sharp.then(|| (w[1] - self.frame.position).norm())
+        });
+        let share = kink.map_or(1.0, |d| (KINK_CLEARANCE * d / largest).min(1.0));
+        if share < LEAST_SHRINKING { radii.to_vec() } else { radii.iter().map(|r| r * share).collect() }
+    }
+
     /// The domain of a given size.
     pub fn domain(&self, shape: TipDomainShape, radius: f64) -> TipDomain {
         let mut domain = TipDomain { radius, ..TipDomain::default() };
@@ -167,9 +188,10 @@ impl TipView {
     pub fn contour(&self, shape: TipDomainShape, radius: f64) -> Vec<DomainPoint> {
         let mut domain = TipDomain { radius, ..TipDomain::default() };
         let line = gauss_legendre(ANGULAR_POINTS / 8);
-        for octant in 0..8 {
+        let n = 8 * CONTOUR_PANELS;
+        for panel in 0..n {
             for &(t, wt) in &line {
-                self.add_area(&mut domain, shape, 1.0, 1.0, (octant as f64 + t) / 8.0, wt / 8.0);
+                self.add_area(&mut domain, shape, 1.0, 1.0, (panel as f64 + t) / n as f64, wt / n as f64);
             }
         }
         let line_weight = |mut p: DomainPoint| {
@@ -303,7 +325,7 @@ impl TipView {
 }
 
 /// Distance to the rim of the domain of unit size in direction `theta`.
-fn rim(shape: TipDomainShape, theta: f64) -> f64 {
+pub(super) fn rim(shape: TipDomainShape, theta: f64) -> f64 {
     match shape {
         TipDomainShape::Disc => 1.0,
         TipDomainShape::Square => 1.0 / theta.cos().abs().max(theta.sin().abs()),

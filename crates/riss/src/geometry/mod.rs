@@ -7,6 +7,7 @@ pub mod aabb;
 pub mod curve;
 pub mod geodesics;
 pub mod obstacles;
+pub mod path_distance;
 pub mod polygon;
 pub mod predicates;
 pub mod tree;

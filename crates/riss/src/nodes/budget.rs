@@ -17,7 +17,7 @@ const MARGIN: f64 = 2.0;
 /// # Errors
 /// [`Error::NodeGeneration`].
 pub(super) fn check(domain: &Domain, spacing: &SpacingField) -> Result<()> {
-    let n = estimate(domain, spacing);
+    let n = estimated_nodes(domain, spacing);
     // Fails for NaN, too.
     if n <= MARGIN * MAX_NODES as f64 { Ok(()) } else { Err(too_many(Some(n))) }
 }
@@ -39,8 +39,8 @@ pub(super) fn too_many(n: Option<f64>) -> Error {
     Error::NodeGeneration { reason }
 }
 
-/// Integral of 1 over the squared spacing; stops counting where it is too much already.
-fn estimate(domain: &Domain, spacing: &SpacingField) -> f64 {
+/// About how many nodes a spacing asks for: the integral of 1 over its square. Stops counting where it is too much already.
+pub fn estimated_nodes(domain: &Domain, spacing: &SpacingField) -> f64 {
     let bounds = domain.aabb();
     let size = bounds.size() / GRID as f64;
     let center = |i: usize, j: usize| bounds.lower + size.component_mul(&Vector2::new(i as f64 + 0.5, j as f64 + 0.5));
@@ -91,7 +91,7 @@ mod tests {
             let case = case(text);
             let n = generate(&case.model, &case.settings.nodes).unwrap().chains.positions.len() as f64;
             let Layout::Graded(graded) = &case.settings.nodes.layout else { panic!() };
-            let estimated = estimate(&case.model.domain, &SpacingField::of_model(&case.model, graded));
+            let estimated = estimated_nodes(&case.model.domain, &SpacingField::of_model(&case.model, graded));
             assert!(estimated / n > 0.5 && estimated / n < 1.5, "{text}: {estimated} for {n}");
         }
     }
@@ -108,6 +108,6 @@ mod tests {
         // Fine along a small part only, but over a long way.
         let field =
             SpacingField::of_model(&model, &Graded { spacing: None, tip_spacing: Some(1e-9), growth: Some(1e-3) });
-        assert!(estimate(&model.domain, &field) > 2.0 * MAX_NODES as f64);
+        assert!(estimated_nodes(&model.domain, &field) > 2.0 * MAX_NODES as f64);
     }
 }

@@ -29,6 +29,22 @@ pub struct Layered {
     pub grid_step: Option<Vector2>,
 }
 
+/// Places irregular nodes at a given spacing.
+///
+/// # Errors
+/// [`Error::NodeGeneration`](crate::error::Error::NodeGeneration).
+pub fn generate_at(model: &Model, spacing: &SpacingField, star: Option<&Star>) -> Result<Layered> {
+    budget::check(&model.domain, spacing)?;
+    let mut chains = Chains::default();
+    chains.add_boundary(model, &|p, _| spacing.at(p));
+    let stars = add_stars(&mut chains, model, star);
+    let known = chains.positions.len();
+    chains.add_cracks(model, spacing, CrackNodes::AtSpacing, known);
+    fill_irregular(&mut chains, model, spacing, &stars)?;
+    let triangulation = Triangulation::new(&chains)?;
+    Ok(Layered { chains, triangulation, grid_step: None })
+}
+
 /// Places the nodes of a model.
 pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
     let mut chains = Chains::default();
@@ -38,13 +54,7 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
             if let Some(largest) = graded.spacing {
                 budget::check_everywhere(&model.domain, largest)?;
             }
-            let spacing = SpacingField::of_model(model, graded);
-            budget::check(&model.domain, &spacing)?;
-            chains.add_boundary(model, &|p, _| spacing.at(p));
-            let stars = add_stars(&mut chains, model, settings.star.as_ref());
-            let known = chains.positions.len();
-            chains.add_cracks(model, &spacing, CrackNodes::AtSpacing, known);
-            fill_irregular(&mut chains, model, &spacing, &stars)?;
+            return generate_at(model, &SpacingField::of_model(model, graded), settings.star.as_ref());
         }
         Layout::Structured(grid) => {
             let bounds = model.domain.aabb();

@@ -10,13 +10,15 @@ pub mod fill;
 pub mod generation;
 mod ligaments;
 pub mod settings;
+mod source_tree;
 pub mod spacing;
 pub mod support;
 pub mod triangulation;
 
 use crate::math::Vector;
+pub use budget::estimated_nodes;
 pub use chains::BoundarySegment;
-pub use generation::{Layered, generate};
+pub use generation::{Layered, generate, generate_at};
 pub use settings::NodeSettings;
 pub use triangulation::Triangulation;
 

@@ -3,6 +3,7 @@
 use super::Nodes;
 use super::ligaments;
 use super::settings::Graded;
+use super::source_tree::SourceTree;
 use super::support::neighbor_distances;
 use crate::crack::EndKind;
 use crate::crack::meetings::{Meeting, shared_vertices};
@@ -38,6 +39,8 @@ const GROWTH: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub struct SpacingField {
     sources: Vec<Source>,
+    /// Over all sources, once they are complete.
+    tree: Option<SourceTree>,
     largest: f64,
     growth: f64,
     given: Option<GivenNodes>,
@@ -61,12 +64,31 @@ struct Source {
 enum Place {
     Point(Vector2),
     Curve(Curve),
+    Rectangle(Aabb<2>),
+}
+
+impl Place {
+    fn distance(&self, p: Vector2) -> f64 {
+        match self {
+            Self::Point(q) => (p - q).norm(),
+            Self::Curve(curve) => curve.distance(p),
+            Self::Rectangle(r) => (r.lower - p).sup(&(p - r.upper)).sup(&Vector2::zeros()).norm(),
+        }
+    }
+
+    fn aabb(&self) -> Aabb<2> {
+        match self {
+            Self::Point(q) => Aabb { lower: *q, upper: *q },
+            Self::Curve(curve) => curve.aabb(),
+            Self::Rectangle(r) => *r,
+        }
+    }
 }
 
 impl SpacingField {
     /// The same spacing everywhere.
     pub fn uniform(spacing: f64) -> Self {
-        Self { sources: vec![], largest: spacing, growth: 1.0, given: None }
+        Self { sources: vec![], tree: None, largest: spacing, growth: 1.0, given: None }
     }
 
     /// The spacing of given nodes: at each the distance to its third nearest, which is the edge length of a regular
@@ -104,7 +126,26 @@ impl SpacingField {
         for p in model.point_loads.iter().map(|l| l.at).chain(model.point_supports.iter().map(|s| s.at)) {
             field.add(Place::Point(p), SINGULAR_FRACTION * largest);
         }
+        field.index();
         field
+    }
+
+    /// The spacing of each of some rectangles within it, growing away from the finer ones.
+    ///
+    /// - `growth`: slope of the spacing with the distance, in (0, 1]
+    pub fn of_rectangles(rectangles: &[(Aabb<2>, f64)], growth: f64) -> Self {
+        let largest = rectangles.iter().map(|r| r.1).fold(0.0, f64::max);
+        let mut field = Self { growth, ..Self::uniform(largest) };
+        rectangles.iter().for_each(|(place, spacing)| field.add(Place::Rectangle(*place), *spacing));
+        field.index();
+        field
+    }
+
+    /// Builds the tree over the sources: before, each point asks all of them.
+    fn index(&mut self) {
+        let boxes: Vec<_> = self.sources.iter().map(|s| s.place.aabb()).collect();
+        let spacings: Vec<_> = self.sources.iter().map(|s| s.spacing).collect();
+        self.tree = Some(SourceTree::new(&boxes, &spacings));
     }
 
     /// Spacing at a point [length].
@@ -112,13 +153,11 @@ impl SpacingField {
         if let Some(given) = &self.given {
             return given.spacings[given.nearest(p, self.largest)];
         }
-        self.sources.iter().fold(self.largest, |h, source| {
-            let distance = match &source.place {
-                Place::Point(q) => (p - q).norm(),
-                Place::Curve(curve) => curve.distance(p),
-            };
-            h.min(source.spacing + self.growth * distance)
-        })
+        let asked = |source: &Source| source.spacing + self.growth * source.place.distance(p);
+        match &self.tree {
+            Some(tree) => tree.least(p, self.growth, self.largest, |i| asked(&self.sources[i as usize])),
+            None => self.sources.iter().fold(self.largest, |h, source| h.min(asked(source))),
+        }
     }
 
     /// Spacing where no feature asks for a smaller one [length].

@@ -1,10 +1,11 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
-//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`], [`field_picture`] and [`shape_picture`] with
-//! `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`].
+//! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
+//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`].
 
 mod color_map;
+pub mod comparison;
 mod contours;
 pub mod exports;
 pub mod field_picture;
@@ -19,6 +20,7 @@ mod svg;
 mod vtk;
 pub mod whole_file;
 
+pub use comparison::Comparison;
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
 pub use report::{REPORT_FILE, RunSource, write_report};

@@ -3,7 +3,9 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::RunInfo;
-use crate::analysis::{CrackRecord, GrowthEnd, Stability, StaticResult, StepRecord, TipRecord, TipStatus};
+use crate::analysis::{
+    CrackRecord, GrowthEnd, RefinementRecord, Stability, StaticResult, StepRecord, TipRecord, TipStatus,
+};
 use crate::crack::{End, EndKind};
 use crate::math::Vector2;
 use schemars::JsonSchema;
@@ -81,10 +83,31 @@ pub struct StepResults {
     pub stage_time_s: BTreeMap<String, f64>,
     /// Warnings of this step.
     pub warnings: Vec<String>,
+    /// Solutions on the way to the accuracy that was asked for, the result last; none without such a wish.
+    #[serde(default)]
+    pub refinements: Vec<RefinementResults>,
     /// Every crack, in the order of the case.
     pub cracks: Vec<CrackResults>,
     /// Force of each supported part on the body over the thickness, by name of the part.
     pub reactions: BTreeMap<String, Option<[f64; 2]>>,
+}
+
+/// A solution on the way to the accuracy that was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RefinementResults {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Estimated error of the stress in the energy norm, over the norm of the stress.
+    pub error_estimate: Option<f64>,
+    /// The error itself, where an exact field is named.
+    pub energy_error: Option<f64>,
+    /// Largest error bar of the stress intensity factors over their magnitude.
+    #[serde(rename = "K_error")]
+    pub k_error: Option<f64>,
+    /// K_I and K_II of every tip that has them, in order [stress·√length].
+    #[serde(rename = "K")]
+    pub factors: Vec<[Option<f64>; 2]>,
 }
 
 /// A crack in one step.
@@ -117,7 +140,7 @@ pub struct TipResults {
     /// Mode II stress intensity factor [stress·√length], positive if the face to the left slides ahead.
     #[serde(rename = "K_II")]
     pub k2: Option<f64>,
-    /// Spread of both over the integration domains [stress·√length].
+    /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
     /// J-integral [stress·length].
@@ -196,8 +219,21 @@ impl StepResults {
             strain_energy: finite(result.strain_energy),
             stage_time_s: sum_by_stage(stage_time_s),
             warnings: result.warnings.iter().map(|w| w.message.clone()).collect(),
+            refinements: result.refinements.iter().map(RefinementResults::new).collect(),
             cracks: step.cracks.iter().map(CrackResults::new).collect(),
             reactions: step.reactions.iter().map(|(part, force)| (part.clone(), finite_pair(*force))).collect(),
+        }
+    }
+}
+
+impl RefinementResults {
+    fn new(record: &RefinementRecord) -> Self {
+        Self {
+            nodes: record.n_nodes,
+            error_estimate: finite(record.error_estimate),
+            energy_error: record.energy_error.and_then(finite),
+            k_error: record.k_error.and_then(finite),
+            factors: record.factors.iter().map(|k| k.map(finite)).collect(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod configurational_force;
 mod laws;
 mod paths;
 mod pieces;

@@ -1,7 +1,8 @@
 //! A result made from an exact field: a square with an edge crack up to its middle.
 
 use riss::analysis::{
-    CrackFaces, CrackRecord, Fields, NodeRecord, StaticResult, StepRecord, TipRecord, TipStatus, Warning,
+    CrackFaces, CrackRecord, Fields, NodeRecord, RefinementRecord, StaticResult, StepRecord, TipRecord, TipStatus,
+    Warning,
 };
 use riss::crack::{End, EndKind};
 use riss::exact::{CrackTipField, ExactField};
@@ -44,6 +45,13 @@ pub fn result(n: usize) -> StaticResult {
         strain_energy: 0.125,
         energy_error: Some(f64::NAN),
         residual: 1e-14,
+        refinements: vec![RefinementRecord {
+            n_nodes: 4,
+            error_estimate: 0.25,
+            energy_error: None,
+            k_error: Some(0.125),
+            factors: vec![[FIELD.k1, f64::INFINITY]],
+        }],
         nodes: fields
             .positions
             .iter()

@@ -180,7 +180,8 @@ fn turns_at_new_tips(
     let turn = |tip: TipId| {
         let record = found.step.cracks[tip.crack].tips.iter().find(|t| t.end == tip.end)?;
         let (k1, k2) = (record.k1?, record.k2?);
-        let driving = TipDriving { k1, k2, t_stress: record.t_stress.unwrap_or(0.0) };
+        let driving =
+            TipDriving { k1, k2, t_stress: record.t_stress.unwrap_or(0.0), force: record.configurational_force };
         (k1 > 0.0).then(|| growth.criterion.kink_angle(&driving, &grown.model.material))
     };
     let is_tip = |tip: TipId| grown.model.cracks[tip.crack].end_kind(tip.end) == EndKind::Tip;

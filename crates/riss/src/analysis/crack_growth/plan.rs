@@ -86,7 +86,7 @@ fn judge(model: &Model, growth: &GrowthSettings, tip: &mut TipRecord, held: bool
         tip.reason = Some("no integration domain fits around the tip".into());
         return;
     };
-    let driving = TipDriving { k1, k2, t_stress: tip.t_stress.unwrap_or(0.0) };
+    let driving = TipDriving { k1, k2, t_stress: tip.t_stress.unwrap_or(0.0), force: tip.configurational_force };
     tip.kink_angle = Some(growth.criterion.kink_angle(&driving, &model.material));
     tip.k_equivalent = Some(growth.equivalent.value(k1, k2));
     tip.increment = Some(0.0);

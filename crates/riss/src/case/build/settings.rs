@@ -2,6 +2,7 @@
 
 use super::outline::vector;
 use super::report::Report;
+use crate::adaptivity::AccuracySettings;
 use crate::analysis::Settings;
 use crate::approximation::settings::{ApproximationSettings, Basis, CrackSmoothing, HoleSmoothing, SupportShape};
 use crate::case::schema::{self, CaseFile, NodeFile};
@@ -52,7 +53,25 @@ pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> S
         constraints: file.constraints,
         solver: file.solver,
         fracture: file.fracture.clone(),
+        accuracy: accuracy(file, report),
     }
+}
+
+fn accuracy(file: &CaseFile, report: &mut Report) -> Option<AccuracySettings> {
+    let accuracy = file.accuracy.as_ref()?;
+    let wishes = [("K_percent", accuracy.k_percent), ("energy_percent", accuracy.energy_percent)];
+    for (name, value) in wishes {
+        if let Some(value) = value {
+            report.positive(format!("accuracy.{name}"), value);
+        }
+    }
+    if wishes.iter().all(|w| w.1.is_none()) {
+        report.error("accuracy", "nothing says how accurate").allow("K_percent, energy_percent, or both");
+    }
+    if accuracy.k_percent.is_some() && file.crack.is_empty() && file.growth.is_none() {
+        report.error("accuracy.K_percent", "there is no crack").suggest("add a [[crack]], or ask for `energy_percent`");
+    }
+    Some(accuracy.clone())
 }
 
 fn check_approximation(file: &CaseFile, report: &mut Report) {

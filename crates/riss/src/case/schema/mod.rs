@@ -6,6 +6,7 @@ mod geometry;
 pub(in crate::case) use conditions::*;
 pub(in crate::case) use geometry::*;
 
+use crate::adaptivity::AccuracySettings;
 use crate::analysis::GrowthSettings;
 use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
@@ -96,6 +97,9 @@ pub(in crate::case) struct CaseFile {
     /// Fracture quantities.
     #[serde(default)]
     pub fracture: FractureSettings,
+    /// Accuracy to refine for; without it, the nodes are as placed.
+    #[serde(default)]
+    pub accuracy: Option<AccuracySettings>,
     /// Crack growth; without it, the cracks stay as they are.
     #[serde(default)]
     pub growth: Option<GrowthSettings>,

@@ -16,6 +16,8 @@ pub enum EquivalentFactor {
     Tanaka,
     /// `√(K_I² + K_II²)`: the energy that straight growth releases [Rice1968].
     EnergyReleaseRate,
+    /// `((K_I² + K_II²)² + 4 K_I² K_II²)^¼`: the configurational force reaches the fracture energy [CPM, section 3.2].
+    ConfigurationalForce,
     /// `K_I` alone.
     ModeI,
 }
@@ -23,8 +25,7 @@ pub enum EquivalentFactor {
 impl EquivalentFactor {
     /// The factor that drives growth [stress·√length]; even in `k2`, equal to `k1` for `k1 > 0` without mode II.
     ///
-    /// - `k1`: mode I factor [stress·√length]; where it is negative the faces touch: `Tanaka` and `EnergyReleaseRate`
-    ///   take zero in its place, the others may return a negative factor, which drives nothing
+    /// - `k1`: mode I factor [stress·√length]; where it is negative the faces touch: all powers of factors take zero in its place, the others may return a negative factor, which drives nothing
     /// - `k2`: mode II factor, any sign [stress·√length]
     pub fn value(&self, k1: f64, k2: f64) -> f64 {
         let k2 = k2.abs();
@@ -39,6 +40,10 @@ impl EquivalentFactor {
                 scale * (k1.powi(4) + 8.0 * k2.powi(4)).sqrt().sqrt()
             }
             Self::EnergyReleaseRate => k1.max(0.0).hypot(k2),
+            Self::ConfigurationalForce => {
+                let (k1, k2, scale) = scaled(k1.max(0.0), k2);
+                scale * (k1 * k1 + k2 * k2).hypot(2.0 * k1 * k2).sqrt()
+            }
             Self::ModeI => k1,
         }
     }
@@ -46,10 +51,13 @@ impl EquivalentFactor {
 
 #[cfg(test)]
 mod tests {
-    use super::EquivalentFactor::{EnergyReleaseRate, MaximumCircumferentialStress, ModeI, Tanaka};
+    use super::EquivalentFactor::{
+        ConfigurationalForce, EnergyReleaseRate, MaximumCircumferentialStress, ModeI, Tanaka,
+    };
     use super::*;
 
-    const ALL: [EquivalentFactor; 4] = [MaximumCircumferentialStress, Tanaka, EnergyReleaseRate, ModeI];
+    const ALL: [EquivalentFactor; 5] =
+        [MaximumCircumferentialStress, Tanaka, EnergyReleaseRate, ConfigurationalForce, ModeI];
 
     fn check_value(factor: EquivalentFactor, k1: f64, k2: f64, expected: f64) {
         for k2 in [k2, -k2] {
@@ -73,6 +81,7 @@ mod tests {
         check_value(MaximumCircumferentialStress, 0.0, 5.0, 10.0 / 3.0_f64.sqrt());
         check_value(Tanaka, 0.0, 5.0, 5.0 * 8.0_f64.sqrt().sqrt());
         check_value(EnergyReleaseRate, 0.0, 5.0, 5.0);
+        check_value(ConfigurationalForce, 0.0, 5.0, 5.0);
         check_value(ModeI, 0.0, 5.0, 0.0);
     }
 
@@ -82,6 +91,8 @@ mod tests {
         check_value(MaximumCircumferentialStress, 1.0, 1.0, 0.8 * 5.0_f64.sqrt());
         check_value(Tanaka, 1.0, 1.0, 3.0_f64.sqrt());
         check_value(EnergyReleaseRate, 3.0, 4.0, 5.0);
+        // |g| E' = |(9 + 1, -2 · 3)|.
+        check_value(ConfigurationalForce, 3.0, 1.0, 136.0_f64.sqrt().sqrt());
         check_value(ModeI, 3.0, 4.0, 3.0);
     }
 
@@ -92,6 +103,7 @@ mod tests {
         check_value(MaximumCircumferentialStress, -2.0, 0.0, -2.0);
         check_value(Tanaka, -100.0, 1.0, 8.0_f64.sqrt().sqrt());
         check_value(EnergyReleaseRate, -100.0, 1.0, 1.0);
+        check_value(ConfigurationalForce, -100.0, 1.0, 1.0);
     }
 
     #[test]

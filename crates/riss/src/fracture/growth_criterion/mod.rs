@@ -14,6 +14,7 @@ pub mod kink;
 mod falling_root;
 
 use crate::material::Elasticity;
+use crate::math::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,9 @@ pub enum GrowthCriterion {
         #[schemars(range(min = 0.0))]
         critical_distance: f64,
     },
+    /// Along the configurational force on the tip [CPM, section 3.2]: at most 45° off in a step, as small increments turn
+    /// into the path of the others.
+    ConfigurationalForce,
 }
 
 /// What loads a crack tip.
@@ -50,6 +54,8 @@ pub struct TipDriving {
     pub k2: f64,
     /// Stress along the crack that is constant at the tip [stress].
     pub t_stress: f64,
+    /// Configurational force, ahead and to the left, if it was integrated [stress·length]; else that of the factors.
+    pub force: Option<Vector2>,
 }
 
 impl GrowthCriterion {
@@ -57,8 +63,12 @@ impl GrowthCriterion {
     ///
     /// Odd in `K_II` to the last bit and zero for `K_II = 0`, also where a large T-stress makes the straight path
     /// unstable: then the least `K_II` chooses the side. Finite for finite input. For `K_I < 0` the criteria of the kink
-    /// take `K_I = 0`, since faces that touch carry the pressure; the others follow their fields as they are.
+    /// take `K_I = 0`, since faces that touch carry the pressure; the others follow their fields as they are. A
+    /// configurational force that was integrated is followed whatever the factors are.
     pub fn kink_angle(&self, driving: &TipDriving, material: &Elasticity) -> f64 {
+        if let (Self::ConfigurationalForce, Some(force)) = (self, driving.force) {
+            return force.y.atan2(force.x);
+        }
         if driving.k2 == 0.0 {
             return 0.0;
         }
@@ -71,6 +81,12 @@ impl GrowthCriterion {
             Self::LocalSymmetry => kink::clockwise_angle_of_symmetry(k1, k2),
             Self::MaximumCircumferentialStressWithTStress { critical_distance } => {
                 hoop_stress::clockwise_angle_with_t_stress(k1, k2, driving.t_stress, critical_distance)
+            }
+            Self::ConfigurationalForce => {
+                // Scaled, so that squares stay in range; the angle of the force does not depend on the moduli.
+                let (k1, k2, _) = scaled(k1, k2);
+                let (ahead, left) = (k1.mul_add(k1, k2 * k2), -2.0 * k1 * k2);
+                (-left).atan2(ahead)
             }
         };
         -driving.k2.signum() * clockwise
@@ -89,19 +105,21 @@ mod tests {
     use crate::material::PlaneState;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
+    use std::f64::consts::FRAC_PI_4;
 
     const MATERIAL: Elasticity = Elasticity { young: 1.0, poisson: 0.3, plane: PlaneState::Strain };
-    const ALL: [GrowthCriterion; 6] = [
+    const ALL: [GrowthCriterion; 7] = [
         GrowthCriterion::MaximumCircumferentialStress,
         GrowthCriterion::MaximumEnergyReleaseRate,
         GrowthCriterion::MinimumStrainEnergyDensity,
         GrowthCriterion::LocalSymmetry,
         GrowthCriterion::MaximumCircumferentialStressWithTStress { critical_distance: 0.0 },
         GrowthCriterion::MaximumCircumferentialStressWithTStress { critical_distance: 0.1 },
+        GrowthCriterion::ConfigurationalForce,
     ];
 
     fn angle(criterion: GrowthCriterion, k1: f64, k2: f64, t_stress: f64) -> f64 {
-        criterion.kink_angle(&TipDriving { k1, k2, t_stress }, &MATERIAL)
+        criterion.kink_angle(&TipDriving { k1, k2, t_stress, force: None }, &MATERIAL)
     }
 
     /// All criteria agree with local symmetry to first order, `θ = -2 K_II / K_I` [Cotterell1980].
@@ -113,6 +131,20 @@ mod tests {
                 assert!((found - 1.0).abs() < 10.0 * ratio * ratio + 1e-12, "{criterion:?}, {ratio}: {found}");
             }
         }
+    }
+
+    /// tan θ = g_2/g_1 = -2 K_I K_II / (K_I² + K_II²) [CPM, Eq. 21]: none in pure mode II, 45° for equal factors.
+    #[test]
+    fn configurational_force_points_the_way() {
+        let criterion = GrowthCriterion::ConfigurationalForce;
+        assert_eq!(angle(criterion, 0.0, 1.0, 0.0).abs(), 0.0);
+        assert!((angle(criterion, 2.0, 2.0, 0.0) + FRAC_PI_4).abs() < 1e-15);
+        assert!((angle(criterion, 3.0, -1.0, 9.0) - 0.6f64.atan()).abs() < 1e-15);
+        let force = Some(Vector2::new(2.0, -1.0));
+        let driving = TipDriving { k1: 1.0, k2: 0.0, t_stress: 0.0, force };
+        assert!((criterion.kink_angle(&driving, &MATERIAL) + 0.5f64.atan()).abs() < 1e-15);
+        let hoop = GrowthCriterion::MaximumCircumferentialStress;
+        assert_eq!(hoop.kink_angle(&driving, &MATERIAL), 0.0);
     }
 
     #[test]
@@ -135,7 +167,9 @@ mod tests {
                 let [k1, k2, t] = [1, 9, 81].map(|stride| numbers[i / stride % numbers.len()]);
                 for (a, b) in sides {
                     let found = angle(criterion, a * k1, k2, b * t);
-                    assert!((-std::f64::consts::PI..=0.0).contains(&found), "{criterion:?} {k1} {k2} {t}: {found}");
+                    let right =
+                        if criterion == GrowthCriterion::ConfigurationalForce && a < 0.0 { FRAC_PI_4 } else { 0.0 };
+                    assert!((-std::f64::consts::PI..=right).contains(&found), "{criterion:?} {k1} {k2} {t}: {found}");
                 }
             }
         }
@@ -157,7 +191,7 @@ mod tests {
         fn angles_are_odd_in_mode_two_and_free_of_units(k1 in -5.0..5.0, k2 in 1e-6..5.0, t in -5.0..5.0) {
             for criterion in ALL {
                 let found = angle(criterion, k1, k2, t);
-                prop_assert!(found < 0.0);
+                prop_assert!(found < 0.0 || criterion == GrowthCriterion::ConfigurationalForce && k1 <= 0.0);
                 prop_assert_eq!((-found).to_bits(), angle(criterion, k1, -k2, t).to_bits());
                 // A power of two scales without rounding.
                 prop_assert_eq!(found.to_bits(), angle(criterion, 1024.0 * k1, 1024.0 * k2, 1024.0 * t).to_bits());

@@ -1,0 +1,161 @@
+//! `riss compare`.
+
+use crate::progress::{Progress, peak_memory_bytes};
+use crate::results::RunRecord;
+use crate::table::{aligned, number};
+use crate::{BAD_CASE, DIFFERENT, DONE, STOPPED, diagnostics};
+use clap::Args;
+use riss::analysis::{
+    GrowthState, Observer, RefinementRecord, Stage, StaticResult, Warning, crack_growth, linear_static,
+};
+use riss::case::Case;
+use riss::output::results::StepResults;
+use riss::output::{Comparison, RESULTS_FILE, Results, RunStatus, read_results};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `riss compare`.
+#[derive(Args)]
+pub struct CompareArguments {
+    /// First run: a folder of results, or a case to run now
+    #[arg(value_name = "A")]
+    pub first: PathBuf,
+    /// Second run: a folder of results, or a case to run now
+    #[arg(value_name = "B")]
+    pub second: PathBuf,
+    /// Overrides a key of the second case; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<String>,
+    /// Largest difference of K that still agrees [% of its magnitude]
+    #[arg(long = "K", value_name = "PERCENT", default_value_t = 1.0)]
+    pub k: f64,
+    /// Largest distance of paths that still agrees [% of their length]
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    pub path: f64,
+    /// Prints the differences as JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+    /// Shows no progress
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Compares two runs; returns the exit code.
+pub fn compare(arguments: &CompareArguments) -> u8 {
+    let read = |path: &Path, overrides: &[String]| match path.is_dir() {
+        true => read_folder(path, overrides),
+        false => run_case(path, overrides, arguments.quiet),
+    };
+    let (first, second) = match (read(&arguments.first, &[]), read(&arguments.second, &arguments.overrides)) {
+        (Ok(first), Ok(second)) => (first, second),
+        (Err(code), _) | (_, Err(code)) => return code,
+    };
+    let comparison = Comparison::new(&first, &second);
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&comparison).expect("plain values");
+        crate::print(&format!("{text}\n"));
+    } else {
+        crate::print(&describe(&comparison));
+    }
+    if comparison.agrees(0.01 * arguments.path, 0.01 * arguments.k) { DONE } else { DIFFERENT }
+}
+
+fn read_folder(dir: &Path, overrides: &[String]) -> Result<Results, u8> {
+    if !overrides.is_empty() {
+        eprintln!("error: {} holds results: there is nothing to override", dir.display());
+        return Err(BAD_CASE);
+    }
+    read_results(dir).map_err(|e| {
+        eprintln!("error: {} cannot be read: {e}", dir.join(RESULTS_FILE).display());
+        BAD_CASE
+    })
+}
+
+/// Runs a case without writing anything.
+fn run_case(path: &Path, overrides: &[String], is_quiet: bool) -> Result<Results, u8> {
+    let case = Case::read(path, overrides).map_err(|errors| {
+        diagnostics::report_errors(&errors);
+        BAD_CASE
+    })?;
+    let mut watch = Watch { progress: Progress::new(is_quiet), steps: vec![], last: None };
+    let outcome = match &case.growth {
+        Some(growth) => crack_growth(&case.model, &case.settings, growth, None, &mut watch).map(|_| ()),
+        None => linear_static(&case.model, &case.settings, &mut watch).map(|_| ()),
+    };
+    let wall_time_s = watch.progress.finish();
+    if let Err(error) = outcome {
+        eprintln!("error: {}: {error}", path.display());
+        return Err(STOPPED);
+    }
+    let stage_time_s = std::mem::take(&mut watch.progress.stage_time_s);
+    let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
+    let info = run.info(&case, RunStatus::Done);
+    Ok(watch.last.map(|last| Results::of_steps(&info, &last, watch.steps)).expect("an analysis has a step"))
+}
+
+/// Keeps every step.
+struct Watch {
+    progress: Progress,
+    steps: Vec<StepResults>,
+    last: Option<StaticResult>,
+}
+
+impl Observer for Watch {
+    fn stage(&mut self, stage: Stage) {
+        self.progress.stage(stage);
+    }
+
+    fn refinement(&mut self, record: &RefinementRecord) {
+        self.progress.refinement(record);
+    }
+
+    fn warning(&mut self, warning: &Warning) {
+        self.progress.warning(warning);
+    }
+
+    fn wants_fields(&self, _step: usize) -> bool {
+        false
+    }
+
+    fn step(&mut self, result: &StaticResult, _state: Option<&GrowthState>) -> ControlFlow<()> {
+        self.steps.push(StepResults::new(result, &[]));
+        self.last = Some(result.clone());
+        ControlFlow::Continue(())
+    }
+}
+
+fn describe(comparison: &Comparison) -> String {
+    let percent = |v: f64| format!("{} %", number(100.0 * v));
+    let known = |v: Option<f64>, show: &dyn Fn(f64) -> String| v.map_or("-".to_string(), show);
+    let paths: Vec<Vec<String>> = (comparison.cracks.iter())
+        .map(|c| {
+            let [a, b] = c.lengths.map(number);
+            vec![c.name.clone(), a, b, number(c.path_distance), percent(c.path_distance_relative)]
+        })
+        .collect();
+    let mut text = aligned(&["crack", "length A", "length B", "path distance", "of length A"], &paths, &[0]);
+    let tips: Vec<Vec<String>> = (comparison.cracks.iter())
+        .flat_map(|c| c.tips.iter().map(move |t| (c, t)))
+        .map(|(c, t)| {
+            vec![
+                c.name.clone(),
+                if t.end.index() == 0 { "start" } else { "end" }.into(),
+                t.steps.to_string(),
+                known(t.k_difference, &percent),
+                known(t.grown, &number),
+                known(t.k_difference_mean, &percent),
+                known(t.k_uncertainty, &percent),
+            ]
+        })
+        .collect();
+    if !tips.is_empty() {
+        let head = ["crack", "end", "steps", "K difference", "when grown by", "mean", "error bar there"];
+        text += &format!("\n{}", aligned(&head, &tips, &[0, 1]));
+    }
+    for (names, which) in [(&comparison.only_in_first, "A"), (&comparison.only_in_second, "B")] {
+        if !names.is_empty() {
+            text += &format!("\nonly in {which}: {}\n", names.join(", "));
+        }
+    }
+    text
+}
