@@ -39,6 +39,7 @@ pub(super) fn solve_step(
 ) -> Result<StaticResult> {
     let mut warnings = Warnings::new(observer);
     let discrete = discretize(model, settings, warnings.observer)?;
+    discrete.notes.iter().for_each(|n| warnings.add(n.clone()));
     let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
     if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
         warnings.add(format!(

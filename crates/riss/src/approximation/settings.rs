@@ -20,6 +20,8 @@ pub struct ApproximationSettings {
     pub spacing_from: SpacingFrom,
     /// What weights do near crack tips, holes and re-entrant corners.
     pub smoothing: SmoothingSettings,
+    /// The field of the tip in the basis near crack tips.
+    pub enrichment: EnrichmentSettings,
 }
 
 impl Default for ApproximationSettings {
@@ -31,6 +33,7 @@ impl Default for ApproximationSettings {
             support: SupportShape::Circular,
             spacing_from: SpacingFrom::Automatic,
             smoothing: SmoothingSettings::default(),
+            enrichment: EnrichmentSettings::default(),
         }
     }
 }
@@ -119,6 +122,64 @@ pub enum HoleSmoothing {
     },
     /// As if the hole were filled, wherever a line inside the support leads around it (4.4).
     SeeThrough,
+}
+
+/// Enrichment near crack tips [EFG, section 5].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct EnrichmentSettings {
+    /// What the basis holds besides polynomials.
+    pub kind: EnrichmentKind,
+    /// How enriched and plain shape functions are joined (Eq. 54).
+    pub ramp: Ramp,
+    /// Distance from a tip up to which only enriched shape functions are used [length]; half of `r2` if not given.
+    #[schemars(range(min = 0.0))]
+    pub r1: Option<f64>,
+    /// Distance from a tip at which only plain shape functions are left [length]; half of the distance to boundaries,
+    /// other cracks and the far end of the crack if not given. Regions never overlap.
+    #[schemars(range(min = 0.0))]
+    pub r2: Option<f64>,
+    /// Support radius over characteristic node spacing of the nodes that reach into a region, if larger than
+    /// elsewhere; the longer basis needs more neighbors.
+    #[schemars(range(min = 1.0, max = 10.0))]
+    pub dilation: Option<f64>,
+}
+
+impl EnrichmentSettings {
+    /// The dilation that is used in the regions, if it is larger than elsewhere.
+    pub fn dilation(&self) -> f64 {
+        self.dilation.unwrap_or(match self.kind {
+            EnrichmentKind::None => 0.0,
+            EnrichmentKind::IntrinsicFull => 3.0,
+            EnrichmentKind::IntrinsicRadial => 2.5,
+        })
+    }
+}
+
+/// Kind of enrichment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum EnrichmentKind {
+    /// None: polynomials only.
+    #[default]
+    None,
+    /// Four functions that span the displacements at a tip in both modes, in the basis (5.3.1).
+    IntrinsicFull,
+    /// The root of the distance from the tip, in the basis (5.3.2): cheaper, less accurate.
+    IntrinsicRadial,
+}
+
+/// Ramp between enriched and plain shape functions [EFG, Eq. 54].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Ramp {
+    /// Straight: strains jump a little at both ends.
+    Linear,
+    /// `1 - 10 ξ³ + 15 ξ⁴ - 6 ξ⁵`: strains are continuous.
+    #[default]
+    Quintic,
+    /// None: the basis changes at `r2`, where displacements jump a little. For comparison.
+    Abrupt,
 }
 
 fn one() -> f64 {

@@ -12,7 +12,7 @@ pub mod settings;
 use crate::math::Vector;
 pub use boundary::{BoundaryElement, BoundaryPoint, boundary_elements};
 pub use cells::{EdgePoint, IntegrationCells};
-pub use settings::{GradientCorrection, IntegrationSettings, Scheme};
+pub use settings::{GradientCorrection, IntegrationSettings, Scheme, TipRule};
 
 /// A position with its integration weight [length^D].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,17 @@
 //! Everything discrete about a body, read-only once built: nodes, supports, cells, neighbor lists.
 
 use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
-use crate::approximation::moving_least_squares::{Derivatives, support_radii};
-use crate::approximation::{ApproximationSettings, MovingLeastSquares, SpacingFrom, Surroundings};
+use crate::approximation::moving_least_squares::{Derivatives, POOR_PIVOT, support_radii};
+use crate::approximation::{
+    ApproximationSettings, Enrichment, MovingLeastSquares, ShapeFunctions, SpacingFrom, Surroundings,
+};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
 use crate::geometry::tree::BoxTree;
 use crate::integration::cells::as_usize;
 use crate::integration::{
-    BoundaryElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme, boundary_elements,
+    BoundaryElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme, TipRule, boundary_elements,
 };
 use crate::math::Vector2;
 use crate::model::Model;
@@ -18,8 +20,6 @@ use crate::nodes::{Layered, Nodes, Triangulation};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Moment matrices with a smaller scaled pivot than this get more neighbors.
-const POOR_PIVOT: f64 = 0.02;
 /// Rounds of support enlargement before a poor point is taken as it is (or refused, if singular).
 const SUPPORT_ROUNDS: usize = 12;
 /// Growth of the supports around a poor point in each round.
@@ -85,6 +85,8 @@ pub struct Discretization {
     pub cell_nodes: NodeLists,
     /// Neighbors of each boundary element.
     pub boundary_nodes: NodeLists,
+    /// What could not be done as the settings say.
+    pub notes: Vec<String>,
 }
 
 impl Discretization {
@@ -102,7 +104,15 @@ impl Discretization {
         let (mut nodes, node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let obstacles = visibility_obstacles(model, &triangulation);
         let barriers = barriers(model, &triangulation, &approximation.smoothing);
+        let (enrichment, notes) = Enrichment::of_model(model, &approximation.enrichment);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
+        if let Some(enrichment) = &enrichment {
+            enlarge_in_regions(&mut nodes, enrichment, approximation, grid_step);
+        }
+        let integration = &match enrichment {
+            Some(_) => integration.at_tips(TipRule::Graded),
+            None => integration.at_tips(TipRule::Product),
+        };
         let tips: Vec<Vector2> = model.tips().iter().map(|t| t.1.position).collect();
         let mut cells = match integration.scheme {
             Scheme::Elements => {
@@ -114,10 +124,11 @@ impl Discretization {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
-        let (approximation, lists) = safeguard(nodes, obstacles, &barriers, *approximation, &cells, &boundary)?;
+        let start = MovingLeastSquares::new(nodes, barriers.clone(), *approximation).enriched(enrichment);
+        let (approximation, lists) = safeguard(start, obstacles, &barriers, &cells, &boundary)?;
         let (of_cells, of_boundary) = lists.split_at(cells.len());
         let (cell_nodes, boundary_nodes) = (NodeLists::from_lists(of_cells), NodeLists::from_lists(of_boundary));
-        Ok(Self { approximation, triangulation, node_of_copy, cells, boundary, cell_nodes, boundary_nodes })
+        Ok(Self { approximation, triangulation, node_of_copy, cells, boundary, cell_nodes, boundary_nodes, notes })
     }
 
     /// Number of nodes.
@@ -163,12 +174,14 @@ struct Poor {
     sight: Vector2,
     quality: f64,
     n_neighbors: usize,
+    /// Least number of neighbors of a fit.
+    needed: usize,
 }
 
 fn inspect(
     approximation: &MovingLeastSquares,
     views: impl Iterator<Item = (Vector2, Vector2)>,
-    around: &mut Surroundings,
+    (around, shape): &mut (Surroundings, ShapeFunctions<2>),
 ) -> Inspection {
     let mut result = Inspection::default();
     let mut seen = vec![false; around.candidates.len()];
@@ -182,9 +195,10 @@ fn inspect(
             seen[k] = true;
         }
         let n_neighbors = around.near.nodes.len();
-        let quality = if n_neighbors < approximation.n_needed() { 0.0 } else { approximation.quality(around) };
+        let quality = approximation.quality(at, sight, around, shape);
         if quality < POOR_PIVOT {
-            result.poor.push(Poor { at, sight, quality, n_neighbors });
+            let needed = approximation.n_needed(at, around);
+            result.poor.push(Poor { at, sight, quality, n_neighbors, needed });
         }
     }
     let visible = around.candidates.iter().zip(&seen).filter(|(_, seen)| **seen);
@@ -202,14 +216,14 @@ fn inspect_all(
     let n_cells = cells.len();
     which
         .par_iter()
-        .map_init(Surroundings::default, |around, &i| {
+        .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |buffer, &i| {
             if i < n_cells {
-                approximation.survey(&cells.bounds(i), around);
-                inspect(approximation, cell_views(cells, i), around)
+                approximation.survey(&cells.bounds(i), &mut buffer.0);
+                inspect(approximation, cell_views(cells, i), buffer)
             } else {
                 let element = &boundary[i - n_cells];
-                approximation.survey(&element.bounds(), around);
-                inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
+                approximation.survey(&element.bounds(), &mut buffer.0);
+                inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), buffer)
             }
         })
         .collect()
@@ -253,33 +267,50 @@ fn set_supports(
     nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, dilation, *c)).collect();
 }
 
+/// Nodes that reach into an enriched region have enough neighbors for the longer basis.
+fn enlarge_in_regions(
+    nodes: &mut Nodes<2>,
+    enrichment: &Enrichment,
+    settings: &ApproximationSettings,
+    grid_step: Option<Vector2>,
+) {
+    let factor = settings.enrichment.dilation() / settings.dilation(grid_step.is_some());
+    if factor > 1.0 {
+        for (p, radii) in nodes.positions.iter().zip(&mut nodes.support_radii) {
+            if enrichment.is_reached(*p, radii.norm() * factor) {
+                *radii *= factor;
+            }
+        }
+    }
+}
+
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
 /// cells, then of all boundary elements.
 fn safeguard(
-    mut nodes: Nodes<2>,
+    mut approximation: MovingLeastSquares,
     obstacles: Obstacles,
     barriers: &Barriers,
-    settings: ApproximationSettings,
     cells: &IntegrationCells,
     boundary: &[BoundaryElement],
 ) -> Result<(MovingLeastSquares, Vec<Vec<u32>>)> {
     let all: Vec<usize> = (0..cells.len() + boundary.len()).collect();
     let mut suspects = all.clone();
-    let tree = BoxTree::of_points(&nodes.positions);
+    let tree = BoxTree::of_points(&approximation.nodes().positions);
     for round in 0..=SUPPORT_ROUNDS {
-        let approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings);
         let found = inspect_all(&approximation, cells, boundary, &suspects);
         let poor = || found.iter().flat_map(|i| &i.poor);
         // Poor but not singular is taken after the last round.
         if let Some(worst) = poor().min_by(|a, b| a.quality.total_cmp(&b.quality)) {
             if round == SUPPORT_ROUNDS && worst.quality == 0.0 {
-                let (n_neighbors, needed) = (worst.n_neighbors, approximation.n_needed());
+                let (n_neighbors, needed) = (worst.n_neighbors, worst.needed);
                 return Err(Error::SingularMomentMatrix { point: worst.at, n_neighbors, needed });
             }
             if round < SUPPORT_ROUNDS {
-                nodes = approximation.nodes().clone();
-                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p, approximation.n_needed() + 3));
+                let mut nodes = approximation.nodes().clone();
+                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p));
                 suspects = suspects.iter().zip(&found).filter(|(_, f)| !f.poor.is_empty()).map(|(i, _)| *i).collect();
+                let (settings, enrichment) = (*approximation.settings(), approximation.enrichment().cloned());
+                approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings).enriched(enrichment);
                 continue;
             }
         }
@@ -290,8 +321,9 @@ fn safeguard(
     unreachable!("the last round returns")
 }
 
-/// Lets the `wanted` nearest visible nodes reach the point well.
-fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>, poor: &Poor, wanted: usize) {
+/// Lets the nearest visible nodes reach the point well: all that a fit needs, and as many more as a linear one.
+fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>, poor: &Poor) {
+    let wanted = poor.needed + 3;
     let mut nearest: Vec<(f64, u32)> = vec![];
     let mut reach = nodes.support_radii[nearest_node(nodes, tree, poor.at)].max();
     for _ in 0..12 {
