@@ -16,8 +16,13 @@ use rustc_hash::FxHashMap;
 const OUTER_SHARE: f64 = 0.5;
 /// Inner radius of an automatic region over the outer one.
 const INNER_SHARE: f64 = 0.5;
-/// A region keeps this share of what limits it.
-const CLEARANCE: f64 = 0.999;
+/// A region keeps this share of the distance to another tip, so that regions do not meet.
+const SHARED: f64 = 0.499;
+/// A region keeps this share of the distance from which on the cut of its functions leaves the crack: nodes beyond the
+/// region reach into it.
+const CLEARANCE: f64 = 0.65;
+/// The cut follows the crack up to this multiple of the outer radius, for the same reason.
+const CUT_REACH: f64 = 2.0;
 /// Derivatives of the tip functions are held nearer to the tip than this, over the least support radius around it.
 const CORE: f64 = 1e-5;
 
@@ -68,7 +73,7 @@ impl Enrichment {
         };
         let (mut regions, mut notes) = (vec![], vec![]);
         for (id, frame) in model.tips() {
-            let limit = largest_region(model, id) * CLEARANCE;
+            let limit = largest_region(model, id);
             let free = free_radius(model, id.crack, frame.position);
             let wanted = settings.r2.unwrap_or(OUTER_SHARE * free);
             let outer = wanted.min(limit);
@@ -79,7 +84,7 @@ impl Enrichment {
                 ));
             }
             let inner = settings.r1.unwrap_or(INNER_SHARE * outer).min(outer);
-            let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, 0.0);
+            let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, CUT_REACH * outer, 0.0);
             regions.push(Region { coordinates, radii: [inner, outer], values: FxHashMap::default() });
         }
         ((!regions.is_empty()).then_some(Self { functions, ramp: settings.ramp, regions }), notes)
@@ -236,21 +241,21 @@ fn largest_region(model: &Model, id: TipId) -> f64 {
     let crack = &model.cracks[id.crack];
     let tip = crack.end_position(id.end);
     let others = model.tips().into_iter().map(|(_, frame)| frame.position).filter(|p| *p != tip);
-    let limit = others.map(|p| 0.5 * (p - tip).norm()).fold(f64::INFINITY, f64::min);
+    let shared = others.map(|p| SHARED * (p - tip).norm()).fold(f64::INFINITY, f64::min);
     let far = match id.end {
         End::Start => End::End,
         End::End => End::Start,
     };
     // The cut goes on straight from the far end.
-    let limit = match crack.end_kind(far) {
-        EndKind::Tip | EndKind::Junction => limit.min((crack.end_position(far) - tip).norm()),
+    let leaves = match crack.end_kind(far) {
+        EndKind::Tip | EndKind::Junction => (crack.end_position(far) - tip).norm(),
         EndKind::Mouth => {
             let path = crack.from_end(far);
             let again = path[0] + through_void(model, path[0], path[0] - path[1]);
-            limit.min((again - tip).norm())
+            (again - tip).norm()
         }
     };
-    limit.min(first_fold(crack, id.end))
+    shared.min(CLEARANCE * leaves.min(first_fold(crack, id.end)))
 }
 
 /// Distance from a tip to the first kink around which its functions cannot be mapped: one that turns too far, or that

@@ -18,7 +18,7 @@ use crate::nodes::Nodes;
 /// Moment matrices with a smaller scaled pivot than this are poor.
 pub const POOR_PIVOT: f64 = 0.02;
 /// Enriched shape functions whose magnitudes sum to more than this are poor.
-const LARGE_SUM: f64 = 5.0;
+const LARGE_SUM: f64 = 3.5;
 
 /// Which derivatives are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -309,6 +309,11 @@ impl MovingLeastSquares {
             super::Basis::Quadratic => 6,
         };
         polynomials + self.place(at, around).map_or(0, |(_, enrichment)| enrichment.functions().count())
+    }
+
+    /// Whether a point that was surveyed lies in an enriched region.
+    pub fn is_enriched(&self, at: Vector2, around: &Surroundings) -> bool {
+        self.place(at, around).is_some()
     }
 
     #[cold]

@@ -146,12 +146,13 @@ pub struct EnrichmentSettings {
 }
 
 impl EnrichmentSettings {
-    /// The dilation that is used in the regions, if it is larger than elsewhere.
-    pub fn dilation(&self) -> f64 {
+    /// The dilation that is used in the regions, if it is larger than elsewhere: as given, or for the full basis 2.75
+    /// on irregular and 3.2 on regular nodes, where K is then good to 0.01 % on 9×9 nodes.
+    pub fn dilation(&self, is_regular: bool) -> f64 {
         self.dilation.unwrap_or(match self.kind {
-            EnrichmentKind::None => 0.0,
-            EnrichmentKind::IntrinsicFull => 3.0,
-            EnrichmentKind::IntrinsicRadial => 2.5,
+            EnrichmentKind::IntrinsicFull if is_regular => 3.2,
+            EnrichmentKind::IntrinsicFull => 2.75,
+            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => 0.0,
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Functions that span the field at a crack tip [EFG, Eqs. 50, 52], along cracks that kink [EFG, Eqs. 57-59].
 
 use crate::crack::{CrackPath, End, TipFrame};
-use crate::math::{Matrix2, Vector2, direction};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use crate::math::{Matrix2, Vector2, cross, direction, turn_left};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Most functions of a set.
 pub const MOST_FUNCTIONS: usize = 4;
@@ -75,10 +75,12 @@ pub struct TipCoordinates {
 #[derive(Clone, Copy, Debug)]
 struct Kink {
     center: Vector2,
-    /// Unit vector along the segment ahead, towards the tip.
+    /// Unit vectors along the segment ahead, towards the tip, and along the segment behind, away from it.
     ahead: Vector2,
-    /// Angle of the segment behind from `ahead`, in (π/2, 3π/2); π for a straight crack (θ_R).
-    angle: f64,
+    behind: Vector2,
+    /// Turn of the mapped angle per turn of the angle, to the right and to the left of the crack seen from the kink
+    /// (C_a, C_b of Eq. 57).
+    slopes: [f64; 2],
 }
 
 /// A mapped point, with first and second derivatives by the original point, all in the tip frame.
@@ -91,20 +93,17 @@ struct Mapped {
 }
 
 impl TipCoordinates {
-    /// Coordinates at an end of a crack; `core` is the distance below which derivatives are held [length].
+    /// Coordinates at an end of a crack, good up to the distance `reach` from it; `core` is the distance below which
+    /// derivatives are held [length].
     ///
     /// Kinks are mapped from the farthest one on: the map at a kink leaves everything ahead of it in place, so that the
     /// crack behind is straight when the next kink nearer to the tip is mapped.
-    pub fn new(crack: &CrackPath, end: End, core: f64) -> Self {
+    pub fn new(crack: &CrackPath, end: End, reach: f64, core: f64) -> Self {
         let frame = crack.frame(end);
         let path: Vec<Vector2> = crack.from_end(end).iter().map(|p| frame.local(*p)).collect();
-        let kink = |w: &[Vector2]| {
-            let (ahead, behind) = ((w[0] - w[1]).normalize(), w[2] - w[1]);
-            let angle = turned(behind, ahead);
-            ((angle - PI).abs() < LARGEST_TURN).then_some(Kink { center: w[1], ahead, angle })
-        };
         // Beyond a kink that cannot be mapped nothing can; regions end there.
-        let mut kinks: Vec<Kink> = path.windows(3).map_while(kink).collect();
+        let mut kinks: Vec<Kink> =
+            path.windows(3).take_while(|w| w[1].norm() < reach).map_while(|w| Kink::new([w[0], w[1], w[2]])).collect();
         kinks.reverse();
         Self { frame, kinks, core }
     }
@@ -147,7 +146,7 @@ impl TipCoordinates {
         let theta = angle_beside(mapped.place, seen);
         let (root, r) = (mapped.place.norm().sqrt(), mapped.place.norm().max(self.core));
         let radial = direction(theta);
-        let polar = Matrix2::from_columns(&[radial, crate::math::turn_left(radial)]);
+        let polar = Matrix2::from_columns(&[radial, turn_left(radial)]);
         let axes = Matrix2::from_columns(&[self.frame.x1(), self.frame.x2()]);
         let mut jet = TipJet {
             values: [0.0; MOST_FUNCTIONS],
@@ -170,53 +169,56 @@ impl TipCoordinates {
 
     /// Maps a point and the place it sees from around all kinks.
     fn map(&self, place: Vector2, mut seen: Vector2) -> (Mapped, Vector2) {
+        let is_own = seen == place;
         let mut mapped = Mapped::start(place);
         for kink in &self.kinks {
-            let branch = kink.branch(seen);
-            if let Some(slope) = branch {
+            if let Some(slope) = kink.slope(seen) {
                 mapped = mapped.then(kink, slope);
-                seen = kink.turn(seen, slope).place;
+                seen = if is_own { mapped.place } else { kink.turn(seen, slope).place };
             }
         }
         (mapped, seen)
     }
 }
 
-/// Angle of a vector from a unit vector, in [0, 2π).
-fn turned(v: Vector2, from: Vector2) -> f64 {
-    crate::math::cross(from, v).atan2(from.dot(&v)).rem_euclid(TAU)
-}
-
 /// Angle of a point, continued beyond ±π where the place it sees from lies on the other side of the cut.
 fn angle_beside(place: Vector2, seen: Vector2) -> f64 {
-    let (theta, beside) = (place.y.atan2(place.x), seen.y.atan2(seen.x));
-    theta + TAU * ((beside - theta) / TAU).round()
+    let theta = place.y.atan2(place.x);
+    if seen == place {
+        return theta;
+    }
+    theta + TAU * ((seen.y.atan2(seen.x) - theta) / TAU).round()
 }
 
 impl Kink {
+    /// The kink at the second of three vertices, the first of which is nearest to the tip; none if it turns too far.
+    fn new([next, center, last]: [Vector2; 3]) -> Option<Self> {
+        let (ahead, behind) = ((next - center).normalize(), (last - center).normalize());
+        // How far the crack turns to the left on its way to the tip: π - θ_R.
+        let turn = cross(-behind, ahead).atan2(-behind.dot(&ahead));
+        let slope = |room: f64| FRAC_PI_2 / room;
+        let slopes = [slope(FRAC_PI_2 - turn), slope(FRAC_PI_2 + turn)];
+        (turn.abs() < LARGEST_TURN).then_some(Self { center, ahead, behind, slopes })
+    }
+
     /// Turn of the mapped angle per turn of the angle at a point; nothing ahead of the perpendicular, where the map is
     /// the identity [EFG, Eq. 57].
-    fn branch(&self, p: Vector2) -> Option<f64> {
+    fn slope(&self, p: Vector2) -> Option<f64> {
         let d = p - self.center;
-        if d.dot(&self.ahead) >= 0.0 {
-            return None;
-        }
-        Some(match turned(d, self.ahead) > self.angle {
-            true => FRAC_PI_2 / (1.5 * PI - self.angle),
-            false => FRAC_PI_2 / (self.angle - FRAC_PI_2),
-        })
+        let is_left = cross(self.behind, d) > 0.0;
+        (d.dot(&self.ahead) < 0.0).then(|| self.slopes[usize::from(is_left)])
     }
 
     /// The map around this kink alone [EFG, Eqs. 58, 59].
     fn turn(&self, p: Vector2, slope: f64) -> Mapped {
         let d = p - self.center;
-        let (r, alpha) = (d.norm(), turned(d, self.ahead));
-        let forward = self.ahead.y.atan2(self.ahead.x);
-        let (before, after) = (direction(forward + alpha), direction(forward + PI + slope * (alpha - self.angle)));
-        let across = |e: Vector2| crate::math::turn_left(e);
-        let jacobian = after * before.transpose() + across(after) * across(before).transpose() * slope;
-        // ρ e(α') has no other second derivatives than (1 - slope²) e/ρ across the ray.
-        let bend = across(before) * across(before).transpose() * ((1.0 - slope * slope) / r);
+        let r = d.norm();
+        let (sin, cos) = (slope * cross(self.behind, d).atan2(self.behind.dot(&d))).sin_cos();
+        let (before, after) = (d / r, -(self.ahead * cos + turn_left(self.ahead) * sin));
+        let across = turn_left(before);
+        let jacobian = after * before.transpose() + turn_left(after) * across.transpose() * slope;
+        // r e(α') has no other second derivatives than (1 - slope²) e/r across the ray.
+        let bend = across * across.transpose() * ((1.0 - slope * slope) / r);
         Mapped { place: self.center + after * r, jacobian, bends: [bend * after.x, bend * after.y] }
     }
 }
@@ -242,7 +244,7 @@ impl Mapped {
 mod tests {
     use super::*;
     use crate::crack::EndKind;
-    use crate::math::turn_left;
+    use std::f64::consts::PI;
 
     fn crack(vertices: &[(f64, f64)]) -> CrackPath {
         let vertices = vertices.iter().map(|v| Vector2::new(v.0, v.1)).collect();
@@ -264,7 +266,7 @@ mod tests {
     fn ends(check: impl Fn(&CrackPath, End, &TipCoordinates)) {
         for path in cracks() {
             for end in [End::Start, End::End] {
-                check(&path, end, &TipCoordinates::new(&path, end, 0.0));
+                check(&path, end, &TipCoordinates::new(&path, end, f64::INFINITY, 0.0));
             }
         }
     }
@@ -275,7 +277,7 @@ mod tests {
         let at = Vector2::new(-0.3, 0.4);
         let (root, theta) = (0.5f64.sqrt(), 0.4f64.atan2(-0.3));
         let (s, c) = (0.5 * theta).sin_cos();
-        let coordinates = TipCoordinates::new(&path, End::End, 0.0);
+        let coordinates = TipCoordinates::new(&path, End::End, f64::INFINITY, 0.0);
         let full = coordinates.values(TipFunctions::Full, at, at);
         let expected = [c, s, s * theta.sin(), c * theta.sin()].map(|g| root * g);
         assert!(full.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{full:?} {expected:?}");
@@ -338,7 +340,7 @@ mod tests {
 
     #[test]
     fn core_keeps_derivatives_finite() {
-        let coordinates = TipCoordinates::new(&cracks()[0], End::End, 1e-4);
+        let coordinates = TipCoordinates::new(&cracks()[0], End::End, 1.0, 1e-4);
         let jet = coordinates.jet(TipFunctions::Full, coordinates.tip(), coordinates.tip());
         assert!(jet.values.iter().all(|v| *v == 0.0));
         assert!((jet.gradients[0].norm() - 50.0).abs() < 1e-9, "{jet:?}");

@@ -176,6 +176,7 @@ struct Poor {
     n_neighbors: usize,
     /// Least number of neighbors of a fit.
     needed: usize,
+    is_enriched: bool,
 }
 
 fn inspect(
@@ -198,7 +199,8 @@ fn inspect(
         let quality = approximation.quality(at, sight, around, shape);
         if quality < POOR_PIVOT {
             let needed = approximation.n_needed(at, around);
-            result.poor.push(Poor { at, sight, quality, n_neighbors, needed });
+            let is_enriched = approximation.is_enriched(at, around);
+            result.poor.push(Poor { at, sight, quality, n_neighbors, needed, is_enriched });
         }
     }
     let visible = around.candidates.iter().zip(&seen).filter(|(_, seen)| **seen);
@@ -274,7 +276,8 @@ fn enlarge_in_regions(
     settings: &ApproximationSettings,
     grid_step: Option<Vector2>,
 ) {
-    let factor = settings.enrichment.dilation() / settings.dilation(grid_step.is_some());
+    let is_regular = grid_step.is_some();
+    let factor = settings.enrichment.dilation(is_regular) / settings.dilation(is_regular);
     if factor > 1.0 {
         for (p, radii) in nodes.positions.iter().zip(&mut nodes.support_radii) {
             if enrichment.is_reached(*p, radii.norm() * factor) {
@@ -307,7 +310,8 @@ fn safeguard(
             }
             if round < SUPPORT_ROUNDS {
                 let mut nodes = approximation.nodes().clone();
-                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p));
+                let mut grown = vec![false; nodes.len()];
+                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p, &mut grown));
                 suspects = suspects.iter().zip(&found).filter(|(_, f)| !f.poor.is_empty()).map(|(i, _)| *i).collect();
                 let (settings, enrichment) = (*approximation.settings(), approximation.enrichment().cloned());
                 approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings).enriched(enrichment);
@@ -321,9 +325,12 @@ fn safeguard(
     unreachable!("the last round returns")
 }
 
-/// Lets the nearest visible nodes reach the point well: all that a fit needs, and as many more as a linear one.
-fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>, poor: &Poor) {
-    let wanted = poor.needed + 3;
+/// Lets the nearest visible nodes reach the point well: as many as a good fit needs.
+///
+/// - `grown`: nodes that have grown for an enriched point in this round, which they do only once, since the points in a
+///   cell at a tip are many
+fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>, poor: &Poor, grown: &mut [bool]) {
+    let wanted = if poor.is_enriched { 2 * poor.needed } else { poor.needed + 3 };
     let mut nearest: Vec<(f64, u32)> = vec![];
     let mut reach = nodes.support_radii[nearest_node(nodes, tree, poor.at)].max();
     for _ in 0..12 {
@@ -339,10 +346,13 @@ fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>
         reach *= 1.5;
     }
     nearest.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    for &(distance, i) in nearest.iter().take(wanted) {
+    // The longer basis does not bear supports of very different sizes side by side.
+    let n = if poor.is_enriched { nearest.len() } else { wanted };
+    for &(distance, i) in nearest.iter().take(n) {
         let radii = &mut nodes.support_radii[i as usize];
         // Far beyond the present reach only if nothing nearer helps: grow step by step.
-        if distance < 3.0 * radii.min() {
+        let again = poor.is_enriched && std::mem::replace(&mut grown[i as usize], true);
+        if distance < 3.0 * radii.min() && !again {
             *radii *= SUPPORT_GROWTH;
         }
     }
