@@ -16,6 +16,8 @@ use rustc_hash::FxHashMap;
 const OUTER_SHARE: f64 = 0.5;
 /// Inner radius of an automatic region over the outer one.
 const INNER_SHARE: f64 = 0.5;
+/// Automatic regions end at the first kink with more than this turn, around which the mapped field is a poor one [rad].
+const SHARP_TURN: f64 = 1.0;
 /// A region keeps this share of the distance to another tip, so that regions do not meet.
 const SHARED: f64 = 0.499;
 /// A region keeps this share of the distance from which on the cut of its functions leaves the crack: nodes beyond the
@@ -75,7 +77,8 @@ impl Enrichment {
         for (id, frame) in model.tips() {
             let limit = largest_region(model, id);
             let free = free_radius(model, id.crack, frame.position);
-            let wanted = settings.r2.unwrap_or(OUTER_SHARE * free);
+            let sharp = first_sharp_kink(&model.cracks[id.crack], id.end);
+            let wanted = settings.r2.unwrap_or(sharp.min(OUTER_SHARE * free));
             let outer = wanted.min(limit);
             if settings.r2.is_some() && outer < wanted {
                 notes.push(format!(
@@ -270,6 +273,16 @@ fn first_fold(crack: &CrackPath, end: End) -> f64 {
         }
     }
     f64::INFINITY
+}
+
+/// Distance from a tip to the first kink that is sharp [length].
+fn first_sharp_kink(crack: &CrackPath, end: End) -> f64 {
+    let path = crack.from_end(end);
+    let is_sharp = |w: &&[Vector2]| {
+        let (ahead, on) = (w[0] - w[1], w[1] - w[2]);
+        cross(on, ahead).atan2(on.dot(&ahead)).abs() > SHARP_TURN
+    };
+    path.windows(3).find(is_sharp).map_or(f64::INFINITY, |w| (w[1] - path[0]).norm())
 }
 
 #[cfg(test)]

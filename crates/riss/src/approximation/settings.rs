@@ -136,7 +136,7 @@ pub struct EnrichmentSettings {
     #[schemars(range(min = 0.0))]
     pub r1: Option<f64>,
     /// Distance from a tip at which only plain shape functions are left [length]; half of the distance to boundaries,
-    /// other cracks and the far end of the crack if not given. Regions never overlap.
+    /// other cracks and the far end of the crack if not given, or that to a sharp kink. Regions never overlap.
     #[schemars(range(min = 0.0))]
     pub r2: Option<f64>,
     /// Support radius over characteristic node spacing of the nodes that reach into a region, if larger than

@@ -319,7 +319,8 @@ mod tests {
                 compared += 1;
                 for functions in [TipFunctions::Full, TipFunctions::Radial] {
                     let jet = coordinates.jet(functions, at, at);
-                    assert_eq!(jet.values, coordinates.values(functions, at, at));
+                    let values = coordinates.values(functions, at, at);
+                    assert!(jet.values.iter().zip(values).all(|(a, b)| (a - b).abs() < 1e-14), "{jet:?} {values:?}");
                     for d in 0..2 {
                         let e = Vector2::ith(d, step);
                         let [ahead, behind] = [at + e, at - e].map(|p| coordinates.jet(functions, p, p));
