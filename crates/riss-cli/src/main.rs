@@ -1,4 +1,4 @@
-//! The riss program: `run`, `check`, `schema`, `new`.
+//! The riss program: `run`, `check`, `shape`, `schema`, `new`.
 
 mod check;
 mod diagnostics;
@@ -9,6 +9,7 @@ mod results;
 mod resume;
 mod run;
 mod schema;
+mod shape;
 mod table;
 
 use clap::{Parser, Subcommand};
@@ -36,6 +37,8 @@ enum Command {
     Run(run::RunArguments),
     /// Reads and checks a case without running it
     Check(check::CheckArguments),
+    /// Draws the weight and the shape function of a node
+    Shape(shape::ShapeArguments),
     /// Prints the JSON Schema of the case file
     Schema,
     /// Writes a commented case to start from
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
     let code = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Shape(arguments) => shape::shape(&arguments),
         Command::Schema => schema::print(),
         Command::New { file } => new::write(&file),
     };

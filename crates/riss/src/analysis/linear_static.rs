@@ -4,9 +4,11 @@ use super::energy::{reactions, strain_energy};
 use super::fields::sample_fields;
 use super::record::*;
 use super::settings::Settings;
+use crate::approximation::CrackSmoothing;
 use crate::crack::TipId;
 use crate::error::{Error, Result};
 use crate::fracture::{ForceAt, SolutionField, TipIntegrals, TipView, tip_integrals};
+use crate::geometry::predicates::distance_to_segment;
 use crate::math::Vector2;
 use crate::model::{FieldPoint, Model, RigidMotion};
 use crate::nodes::generate;
@@ -40,6 +42,15 @@ pub(super) fn solve_step(
     let mut warnings = Warnings::new(observer);
     let discrete = discretize(model, settings, warnings.observer)?;
     discrete.notes.iter().for_each(|n| warnings.add(n.clone()));
+    if let CrackSmoothing::Transparency { .. } = settings.approximation.resolved_smoothing().cracks() {
+        let n = nodes_too_near(model, &discrete);
+        if n > 0 {
+            warnings.add(format!(
+                "{n} nodes near crack tips are closer to the crack than a quarter of the node spacing: where the crack is \
+                 transparent their functions have a trough ahead of the tip; move them away or use diffraction"
+            ));
+        }
+    }
     let (solution, method) = solve_once(model, settings, &discrete, &mut warnings)?;
     if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
         warnings.add(format!(
@@ -76,6 +87,23 @@ pub(super) fn solve_step(
         integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
         warnings: warnings.list,
     })
+}
+
+/// Nodes that act on a tip and stand nearer to its crack than a quarter of the node spacing [EFG, section 4.3]; a node at
+/// the tip itself looks past the crack.
+fn nodes_too_near(model: &Model, discrete: &Discretization) -> usize {
+    let nodes = discrete.approximation.nodes();
+    let is_near = |copy: usize, node: usize| {
+        let (p, radius) = (nodes.positions[node], nodes.support_radii[node].max());
+        let spacing = discrete.triangulation.edge_length[discrete.triangulation.copies[copy].point as usize];
+        model.tips().iter().any(|(tip, frame)| {
+            let away = (p - frame.position).norm();
+            let to_crack = || model.cracks[tip.crack].segments().map(|(a, b)| distance_to_segment(p, a, b));
+            away > 0.0 && away < radius && to_crack().fold(away, f64::min) < (0.25 * spacing).min(0.999 * away)
+        })
+    };
+    let standing = discrete.node_of_copy.iter().enumerate().filter_map(|(copy, node)| Some((copy, (*node)? as usize)));
+    standing.filter(|(copy, node)| is_near(*copy, *node)).count()
 }
 
 /// Nodes, supports, cells and neighbor lists of a model.

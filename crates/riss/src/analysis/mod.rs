@@ -4,10 +4,12 @@ pub mod crack_growth;
 pub mod energy;
 pub mod fields;
 pub mod linear_static;
+pub mod node_function;
 pub mod record;
 pub mod settings;
 
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
+pub use node_function::{NodeFunction, nearest_node, sample_node_function};
 pub use record::*;
 pub use settings::Settings;

@@ -2,6 +2,7 @@
 
 use super::fade::Fade;
 use super::settings::{CrackSmoothing, HoleSmoothing, SmoothingSettings};
+use crate::crack::meetings::shared_vertices;
 use crate::crack::{CrackPath, End, EndKind};
 use crate::geometry::curve::Curve;
 use crate::geometry::geodesics::{Bend, Corners};
@@ -73,12 +74,13 @@ pub fn barriers(model: &Model, triangulation: &Triangulation, smoothing: &Smooth
     let past_mouth: PastMouth = if holes == HoleSmoothing::SeeThrough { &through_hole } else { &overshoot };
     let mut lines: Vec<[Vector2; 2]> = vec![];
     let mut fades = vec![];
+    let shared: Vec<Vector2> = shared_vertices(&model.cracks).into_iter().map(|m| m.place).collect();
     for crack in &model.cracks {
         let own = crack_lines(crack, past_mouth);
         match cracks {
             CrackSmoothing::Visibility | CrackSmoothing::Diffraction { .. } => lines.extend(own),
             CrackSmoothing::Transparency { kappa, lambda } => {
-                fades.extend(crack_fades(crack, &own, triangulation, kappa, lambda));
+                fades.extend(crack_fades(crack, &own, triangulation, &shared, [kappa, lambda]));
                 lines.extend(own);
             }
             CrackSmoothing::SeeThrough => {}
@@ -107,6 +109,8 @@ pub fn barriers(model: &Model, triangulation: &Triangulation, smoothing: &Smooth
         (false, CrackSmoothing::Visibility | CrackSmoothing::SeeThrough) => None,
     };
     let lambda = match (cracks, holes) {
+        // The shortest of ways with shades is continuous as it is, not with an exponent.
+        (CrackSmoothing::Transparency { .. }, _) => 1.0,
         (CrackSmoothing::Diffraction { lambda }, _) | (_, HoleSmoothing::Diffraction { lambda }) => lambda,
         (_, HoleSmoothing::Visibility | HoleSmoothing::SeeThrough) => 1.0,
     };
@@ -187,14 +191,16 @@ fn crack_fades(
     crack: &CrackPath,
     lines: &[[Vector2; 2]],
     triangulation: &Triangulation,
-    kappa: f64,
-    lambda: f64,
+    shared: &[Vector2],
+    [kappa, lambda]: [f64; 2],
 ) -> Vec<Option<Fade>> {
     let total = crack.length();
     let depth = |end: End| {
         let tip = crack.end_position(end);
         let point = triangulation.positions.iter().position(|p| *p == tip)?;
-        (crack.end_kind(end) == EndKind::Tip).then(|| kappa * triangulation.edge_length[point])
+        // Not beyond where others meet the crack: they would hide at once what is seen through it.
+        let arm = arm_length(&crack.from_end(end), shared);
+        (crack.end_kind(end) == EndKind::Tip).then(|| arm.min(kappa * triangulation.edge_length[point]))
     };
     let (start, end) = (depth(End::Start), depth(End::End));
     let mut before = 0.0;
@@ -206,6 +212,18 @@ fn crack_fades(
         before += (to - from).norm();
     }
     fades
+}
+
+/// Length from the start of a path to its first vertex that belongs to other cracks too, or to its end.
+fn arm_length(path: &[Vector2], shared: &[Vector2]) -> f64 {
+    let mut length = 0.0;
+    for w in path.windows(2) {
+        length += (w[1] - w[0]).norm();
+        if shared.contains(&w[1]) {
+            break;
+        }
+    }
+    length
 }
 
 /// Opaque lines along all loops that are not convex.

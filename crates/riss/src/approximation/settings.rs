@@ -49,15 +49,28 @@ impl ApproximationSettings {
             (Basis::Linear, WeightFunction::QuarticSpline | WeightFunction::CubicSpline) => 2.0,
         })
     }
+
+    /// The smoothing that is used, nothing left open; rectangular supports know visibility only. The full enriched basis
+    /// needs continuous weights around tips: diffraction with λ = 1 if nothing is said.
+    pub fn resolved_smoothing(&self) -> SmoothingSettings {
+        let mut given = match self.support {
+            SupportShape::Circular => self.smoothing,
+            SupportShape::Rectangular => SmoothingSettings::VISIBILITY,
+        };
+        if self.enrichment.kind == EnrichmentKind::IntrinsicFull && given.cracks.is_none() {
+            given.cracks = Some(CrackSmoothing::Diffraction { lambda: 1.0 });
+        }
+        SmoothingSettings { cracks: Some(given.cracks()), holes: Some(given.holes()) }
+    }
 }
 
 /// Weight functions near boundaries that are not convex [EFG, section 4].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SmoothingSettings {
-    /// Around cracks; visibility if not given.
+    /// Around cracks; if not given visibility, or diffraction with the full enriched basis.
     pub cracks: Option<CrackSmoothing>,
-    /// Around holes and re-entrant corners; visibility if not given.
+    /// Around holes and re-entrant corners; diffraction if not given.
     pub holes: Option<HoleSmoothing>,
 }
 
@@ -66,14 +79,19 @@ impl SmoothingSettings {
     pub const VISIBILITY: Self =
         Self { cracks: Some(CrackSmoothing::Visibility), holes: Some(HoleSmoothing::Visibility) };
 
-    /// What is used at cracks.
+    /// What is used at cracks: as given, or visibility, which gives the best K with polynomial bases.
     pub fn cracks(&self) -> CrackSmoothing {
         self.cracks.unwrap_or(CrackSmoothing::Visibility)
     }
 
-    /// What is used at holes and re-entrant corners.
+    /// What is used at holes and re-entrant corners: as given, or diffraction, with the exponent of the cracks.
     pub fn holes(&self) -> HoleSmoothing {
-        self.holes.unwrap_or(HoleSmoothing::Visibility)
+        let lambda = match self.cracks() {
+            CrackSmoothing::Diffraction { lambda } => lambda,
+            CrackSmoothing::Transparency { .. } => 1.0,
+            CrackSmoothing::Visibility | CrackSmoothing::SeeThrough => two(),
+        };
+        self.holes.unwrap_or(HoleSmoothing::Diffraction { lambda })
     }
 }
 
@@ -86,14 +104,14 @@ pub enum CrackSmoothing {
     /// Around tips and kinks, by the shortest way (4.2).
     Diffraction {
         /// Exponent λ of the detour in Eq. 29, at least 1; the weight's argument is the length of the way for 1.
-        #[serde(default = "one")]
+        #[serde(default = "two")]
         #[schemars(range(min = 1.0, max = 10.0))]
         lambda: f64,
     },
     /// Through the crack close to a tip, less the farther behind it; around kinks by the shortest way (4.3).
     Transparency {
         /// Distance behind the tip where the crack becomes opaque, over the node spacing at the tip (κ), positive.
-        #[serde(default = "one")]
+        #[serde(default = "half")]
         #[schemars(range(min = 0.0, max = 10.0))]
         kappa: f64,
         /// Exponent λ of Eq. 32, at least 2.
@@ -115,8 +133,8 @@ pub enum HoleSmoothing {
     Visibility,
     /// Around the boundary, by the shortest way (4.2).
     Diffraction {
-        /// Exponent λ of the detour in Eq. 29, at least 1, the same as around cracks.
-        #[serde(default = "one")]
+        /// Exponent λ of the detour in Eq. 29, at least 1, the same as around cracks; 1 where cracks are transparent.
+        #[serde(default = "two")]
         #[schemars(range(min = 1.0, max = 10.0))]
         lambda: f64,
     },
@@ -183,8 +201,8 @@ pub enum Ramp {
     Abrupt,
 }
 
-fn one() -> f64 {
-    1.0
+fn half() -> f64 {
+    0.5
 }
 
 fn two() -> f64 {

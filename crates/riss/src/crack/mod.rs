@@ -2,8 +2,10 @@
 //!
 //! Knows no nodes, no materials and no loads.
 
+pub mod meetings;
 pub mod path;
 pub mod tip;
 
+pub use meetings::Meeting;
 pub use path::{CrackPath, End, EndKind};
 pub use tip::{TipFrame, TipId};

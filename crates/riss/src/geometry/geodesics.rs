@@ -103,13 +103,12 @@ impl Corners {
         let longest = within.longest();
         let leg = |a, b| leg(&walls, a, b).unwrap_or(f64::INFINITY);
         let mut lengths: Vec<f64> = near.iter().map(|c| leg(sight, self.place(*c))).collect();
-        let mut open: Vec<usize> = (0..near.len()).collect();
-        open.retain(|&k| self.bends[near[k] as usize] == Bend::Every || lengths[k].is_infinite());
-        lengths
-            .iter_mut()
-            .zip(&near)
-            .filter(|(_, c)| self.bends[**c as usize] == Bend::Hidden)
-            .for_each(|(l, _)| *l = f64::INFINITY);
+        let bends = |k: usize| match self.bends[near[k] as usize] {
+            Bend::Every => true,
+            Bend::Hidden => !obstacles.visible_past(&walls, sight, self.place(near[k])),
+        };
+        let (mut open, straight): (Vec<usize>, Vec<usize>) = (0..near.len()).partition(|k| bends(*k));
+        straight.into_iter().for_each(|k| lengths[k] = f64::INFINITY);
         // Dijkstra's algorithm; corners are few, so the nearest open one is searched plainly.
         while let Some(k) = (0..open.len()).min_by(|a, b| lengths[open[*a]].total_cmp(&lengths[open[*b]])) {
             let from = open.swap_remove(k);

@@ -1,6 +1,7 @@
 //! Material between a crack and what it runs beside: the boundary, a hole, another crack.
 
 use super::spacing::SpacingField;
+use crate::crack::meetings::shared_vertices;
 use crate::crack::{CrackPath, End, EndKind};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::predicates::distance_to_segment;
@@ -21,7 +22,8 @@ pub(super) fn add(field: &mut SpacingField, model: &Model) {
         model.cracks.iter().enumerate().flat_map(|(k, c)| c.segments().map(move |(a, b)| (k, [a, b]))).collect();
     let tree = BoxTree::new(&segments.iter().map(|s| Aabb::of_points(s.1)).collect::<Vec<_>>());
     // Where cracks start from a wall or end at one: no ligament gets thinner than the distance from there allows.
-    let contacts: Vec<Vector2> = model.cracks.iter().flat_map(contacts).collect();
+    let shared = shared_vertices(&model.cracks).into_iter().map(|m| m.place);
+    let contacts: Vec<Vector2> = model.cracks.iter().flat_map(contacts).chain(shared).collect();
     for (index, crack) in model.cracks.iter().enumerate() {
         let mut wanted = vec![];
         walk(crack, |p| {

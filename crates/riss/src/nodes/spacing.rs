@@ -5,6 +5,7 @@ use super::ligaments;
 use super::settings::Graded;
 use super::support::neighbor_distances;
 use crate::crack::EndKind;
+use crate::crack::meetings::{Meeting, shared_vertices};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::curve::Curve;
 use crate::geometry::obstacles::Obstacles;
@@ -12,6 +13,7 @@ use crate::geometry::predicates::distance_to_segment;
 use crate::geometry::tree::BoxTree;
 use crate::math::{Vector2, cross, turn_left};
 use crate::model::Model;
+use std::f64::consts::{PI, TAU};
 
 /// Spacing without any feature, as a fraction of √area.
 const BODY_FRACTION: f64 = 1.0 / 25.0;
@@ -94,6 +96,7 @@ impl SpacingField {
         let mut field = Self { growth: settings.growth.unwrap_or(GROWTH), ..Self::uniform(largest) };
         field.add_tips(model, settings.tip_spacing);
         field.add_kinks(model);
+        field.add_junctions(model);
         field.add_edges(model);
         field.add_changes(model);
         field.add_thickness(model);
@@ -153,6 +156,26 @@ impl SpacingField {
                 if cross(a, b).abs().atan2(a.dot(&b)) > SMOOTH_TURN {
                     self.add(Place::Point(w[1]), KINK_FRACTION * a.norm().min(b.norm()));
                 }
+            }
+        }
+    }
+
+    /// Where cracks meet, stress is singular if one of the sectors between them is wider than a half turn.
+    fn add_junctions(&mut self, model: &Model) {
+        let mouths: Vec<Vector2> = model.cracks.iter().flat_map(|c| c.mouths()).collect();
+        let inside = shared_vertices(&model.cracks).into_iter().filter(|m| !mouths.contains(&m.place));
+        for Meeting { place, cracks } in inside {
+            let mut arms: Vec<Vector2> = vec![];
+            for (a, b) in cracks.iter().flat_map(|c| model.cracks[*c].segments()) {
+                arms.extend([(a, b), (b, a)].into_iter().filter(|s| s.0 == place).map(|s| s.1 - s.0));
+            }
+            let mut angles: Vec<f64> = arms.iter().map(|d| d.y.atan2(d.x)).collect();
+            angles.sort_by(f64::total_cmp);
+            let next = angles.iter().skip(1).copied().chain(angles.first().map(|a| a + TAU));
+            let widest = angles.iter().zip(next).map(|(a, b)| b - a).fold(0.0, f64::max);
+            if widest > PI + SMOOTH_TURN {
+                let shortest = arms.iter().map(|d| d.norm()).fold(f64::INFINITY, f64::min);
+                self.add(Place::Point(place), KINK_FRACTION * shortest);
             }
         }
     }

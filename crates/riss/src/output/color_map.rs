@@ -17,9 +17,14 @@ const VIRIDIS: [[f64; 3]; 11] = [
 
 /// Color of a value between 0 and 1.
 pub(super) fn viridis(value: f64) -> String {
+    shaded_viridis(value, 1.0)
+}
+
+/// The same, darker by a factor.
+pub(super) fn shaded_viridis(value: f64, brightness: f64) -> String {
     let at = value.clamp(0.0, 1.0) * 10.0;
     let k = (at as usize).min(9);
-    let [r, g, b] =
-        [0, 1, 2].map(|c| (VIRIDIS[k][c] + (at - k as f64) * (VIRIDIS[k + 1][c] - VIRIDIS[k][c])).round() as u8);
+    let [r, g, b] = [0, 1, 2]
+        .map(|c| (brightness * (VIRIDIS[k][c] + (at - k as f64) * (VIRIDIS[k + 1][c] - VIRIDIS[k][c]))).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }

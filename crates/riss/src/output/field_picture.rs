@@ -139,7 +139,8 @@ fn scale(fields: &Fields, values: &[f64]) -> (f64, f64) {
     (quantile(BEYOND_SCALE), quantile(1.0 - BEYOND_SCALE))
 }
 
-fn color_bar(svg: &mut Svg, low: f64, high: f64, n_bands: usize) {
+/// Draws the colors of a scale with numbers at the right side.
+pub(super) fn color_bar(svg: &mut Svg, low: f64, high: f64, n_bands: usize) {
     let (width, height) = svg.size();
     let (x, top, bottom) = (width - BAR - 0.5 * MARGIN, MARGIN, height - MARGIN);
     let step = (bottom - top) / n_bands as f64;

@@ -1,7 +1,7 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
-//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`] and [`field_picture`] with `svg` and
+//! contract), [`history`], [`fields`] with `vtk` below it, [`model_picture`], [`field_picture`] and [`shape_picture`] with `svg` and
 //! `contours` below them, [`whole_file`].
 
 mod color_map;
@@ -12,6 +12,7 @@ pub mod history;
 pub mod model_picture;
 pub mod results;
 pub mod run_writer;
+pub mod shape_picture;
 mod svg;
 mod vtk;
 pub mod whole_file;
@@ -20,6 +21,7 @@ pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};
+pub use shape_picture::write_shape_pictures;
 
 use crate::analysis::StaticResult;
 use schemars::JsonSchema;

@@ -3,7 +3,7 @@
 use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
 use crate::approximation::moving_least_squares::{Derivatives, POOR_PIVOT, support_radii};
 use crate::approximation::{
-    ApproximationSettings, Enrichment, MovingLeastSquares, ShapeFunctions, SpacingFrom, Surroundings,
+    ApproximationSettings, CrackSmoothing, Enrichment, MovingLeastSquares, ShapeFunctions, SpacingFrom, Surroundings,
 };
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
@@ -101,13 +101,17 @@ impl Discretization {
         integration: &IntegrationSettings,
     ) -> Result<Self> {
         let Layered { chains, triangulation, grid_step } = layered;
-        let (mut nodes, node_of_copy) = nodes_of(&triangulation, &chains.is_node);
+        let (mut nodes, mut node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let obstacles = visibility_obstacles(model, &triangulation);
-        let barriers = barriers(model, &triangulation, &approximation.smoothing);
+        let smoothing = approximation.resolved_smoothing();
+        let barriers = barriers(model, &triangulation, &smoothing);
         let (enrichment, notes) = Enrichment::of_model(model, &approximation.enrichment);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
         if let Some(enrichment) = &enrichment {
             enlarge_in_regions(&mut nodes, enrichment, approximation, grid_step);
+        }
+        if smoothing.cracks() == CrackSmoothing::SeeThrough {
+            join_sides(&mut nodes, &mut node_of_copy, &barriers, approximation);
         }
         let integration = &match enrichment {
             Some(_) => integration.at_tips(TipRule::Graded),
@@ -285,6 +289,40 @@ fn enlarge_in_regions(
             }
         }
     }
+}
+
+/// Makes nodes one that stand at the same place and see each other through a crack: their functions would be the same.
+fn join_sides(
+    nodes: &mut Nodes<2>,
+    node_of_copy: &mut [Option<u32>],
+    barriers: &Barriers,
+    settings: &ApproximationSettings,
+) {
+    let approximation = MovingLeastSquares::new(nodes.clone(), barriers.clone(), *settings);
+    let mut around = Surroundings::default();
+    let mut kept = Nodes::default();
+    let mut new_index: Vec<u32> = vec![];
+    // Nodes at one place follow each other.
+    for i in 0..nodes.len() {
+        let (at, sight) = (nodes.positions[i], nodes.sights[i]);
+        let before = (0..i).rev().take_while(|j| nodes.positions[*j] == at).collect::<Vec<_>>();
+        if !before.is_empty() {
+            approximation.survey(&Aabb::of_points([at, sight]), &mut around);
+            approximation.gather(at, sight, Derivatives::First, &mut around);
+        }
+        let twin = before.into_iter().find(|j| around.near.nodes.contains(&(*j as u32)));
+        new_index.push(match twin {
+            Some(j) => new_index[j],
+            None => {
+                kept.positions.push(at);
+                kept.sights.push(sight);
+                kept.support_radii.push(nodes.support_radii[i]);
+                kept.positions.len() as u32 - 1
+            }
+        });
+    }
+    node_of_copy.iter_mut().flatten().for_each(|node| *node = new_index[*node as usize]);
+    *nodes = kept;
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all

@@ -15,7 +15,7 @@
 //! Bounds for the square: what the exact field of the boundary leaves to integration, 0.05 % in K_I and 0.1 % in mixed
 //! mode. The plate: converged finite elements give 34.0425 and 4.5370; tolerance is the error of the paper's own number.
 
-use super::bodies::{edge_crack, inner_crack, near_tip_square, pulled, rectangle, solve, tips};
+use super::bodies::{inner_crack, near_tip_square, pulled, rectangle, solve, tips};
 use super::shear_edge_crack::{REFERENCE, plate};
 use riss::analysis::{Settings, Silent, StaticResult, discretize};
 use riss::approximation::moving_least_squares::Derivatives;

@@ -4,6 +4,7 @@ mod arc_crack;
 mod bodies;
 mod energy_release;
 mod enrichment;
+mod junctions;
 mod near_tip;
 mod robustness;
 mod shear_edge_crack;

@@ -9,11 +9,13 @@ use riss::approximation::{
     Surroundings,
 };
 use riss::crack::EndKind::{self, Mouth, Tip};
+use riss::crack::meetings::join;
 use riss::geometry::curve::Curve;
 use riss::geometry::predicates::segments_cross;
 use riss::material::PlaneState;
 use riss::math::{Matrix2, Vector2};
 use riss::model::{Domain, Model};
+use std::f64::consts::TAU;
 
 const DIFFRACTION: SmoothingSettings = diffraction(1.0);
 
@@ -33,6 +35,7 @@ fn smoothings() -> Vec<SmoothingSettings> {
         with(transparency, HoleSmoothing::Diffraction { lambda: 1.0 }),
         with(CrackSmoothing::Diffraction { lambda: 1.0 }, HoleSmoothing::SeeThrough),
         with(transparency, HoleSmoothing::SeeThrough),
+        with(CrackSmoothing::Transparency { kappa: 0.5, lambda: 3.0 }, HoleSmoothing::Diffraction { lambda: 1.0 }),
         with(CrackSmoothing::SeeThrough, HoleSmoothing::SeeThrough),
         with(CrackSmoothing::SeeThrough, HoleSmoothing::Diffraction { lambda: 1.0 }),
     ]
@@ -53,6 +56,42 @@ fn random_body(random: &mut Random) -> Model {
     add(&[around(0.3, 0.8), around(0.36, 0.84)], [Tip; 2]);
     model
 }
+
+/// The same plate with cracks that meet: a star, a cross, a T beside another crack's tip, a branched edge crack, a crack
+/// on the crack from the hole, and a curved one along the hole.
+fn random_junctions(random: &mut Random) -> Model {
+    let outline = polygon(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.45), (0.55, 0.45), (0.55, 1.0), (0.0, 1.0)]);
+    let center = Vector2::new(random.between(0.75, 0.8), random.between(0.2, 0.25));
+    let mut model = body(Domain::new(outline, vec![vec![Curve::circle(center, 0.1)]]), PlaneState::Strain);
+    let mut add = |points: &[(f64, f64)], ends: [EndKind; 2]| model.cracks.push(crack(points, ends));
+    let mut around = |x: f64, y: f64| (x + random.between(-0.02, 0.02), y + random.between(-0.02, 0.02));
+    let star = around(0.2, 0.15);
+    for (x, y) in [(0.2, 0.3), (0.08, 0.08), (0.33, 0.07)] {
+        add(&[star, around(x, y)], [Tip; 2]);
+    }
+    add(&[around(0.08, 0.85), around(0.3, 0.93)], [Tip; 2]);
+    add(&[around(0.15, 0.95), around(0.2, 0.88), around(0.24, 0.8)], [Tip; 2]);
+    let (a, b) = (around(0.36, 0.55), around(0.34, 0.85));
+    add(&[a, b], [Tip; 2]);
+    add(&[(0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)), around(0.48, 0.72)], [Tip; 2]);
+    let fork = around(0.14, 0.55);
+    add(&[(0.0, 0.57), fork], [Mouth, Tip]);
+    add(&[fork, around(0.24, 0.63), around(0.3, 0.62)], [Tip; 2]);
+    add(&[fork, around(0.22, 0.48), around(0.33, 0.5)], [Tip; 2]);
+    let (rim, knee) = ((center.x - 0.1, center.y), around(0.55, 0.22));
+    add(&[rim, knee], [Mouth, Tip]);
+    add(&[knee, around(0.45, 0.3)], [Tip; 2]);
+    add(&[knee, around(0.5, 0.1)], [Tip; 2]);
+    let bent = |k: usize| center + riss::math::direction(0.6 + 0.25 * k as f64) * 0.14;
+    add(&(0..9).map(bent).map(|p| (p.x, p.y)).collect::<Vec<_>>(), [Tip; 2]);
+    join(&mut model.cracks, 1e-6).expect("they meet in points");
+    model
+}
+
+/// One of the two bodies.
+type MakeBody = fn(&mut Random) -> Model;
+
+const BODIES: [MakeBody; 2] = [random_body, random_junctions];
 
 fn approximation(model: &Model, seed: u64, smoothing: SmoothingSettings) -> MovingLeastSquares {
     let approximation = ApproximationSettings { dilation: Some(2.5), smoothing, ..ApproximationSettings::default() };
@@ -122,10 +161,10 @@ fn largest_jump(model: &Model, mls: &MovingLeastSquares, random: &mut Random) ->
     largest
 }
 
-fn check_continuity(smoothing: SmoothingSettings) {
+fn check_continuity(make: MakeBody, smoothing: SmoothingSettings) {
     for seed in 0..4 {
         let mut random = Random(seed);
-        let model = random_body(&mut random);
+        let model = make(&mut random);
         let mls = approximation(&model, seed, smoothing);
         let (jump, at) = largest_jump(&model, &mls, &mut random);
         assert!(jump <= 1e-4, "{smoothing:?}: a weight jumps by {jump:.2e} at {at}, seed {seed}");
@@ -135,17 +174,53 @@ fn check_continuity(smoothing: SmoothingSettings) {
 #[test]
 fn weights_jump_across_faces_only() {
     for smoothing in smoothings() {
-        check_continuity(smoothing);
+        check_continuity(random_body, smoothing);
     }
 }
 
-/// The test above can fail.
+#[test]
+fn weights_jump_across_faces_only_where_cracks_meet() {
+    for smoothing in smoothings() {
+        check_continuity(random_junctions, smoothing);
+    }
+}
+
+/// The tests above can fail.
 #[test]
 fn visibility_jumps_elsewhere() {
-    let mut random = Random(1);
-    let model = random_body(&mut random);
-    let mls = approximation(&model, 1, SmoothingSettings::VISIBILITY);
-    assert!(largest_jump(&model, &mls, &mut random).0 > 0.05);
+    for make in BODIES {
+        let mut random = Random(1);
+        let model = make(&mut random);
+        let mls = approximation(&model, 1, SmoothingSettings::VISIBILITY);
+        assert!(largest_jump(&model, &mls, &mut random).0 > 0.05);
+    }
+}
+
+/// Near the center of a star with arms longer than the supports, nodes act in their own sector only.
+#[test]
+fn sectors_of_a_star_do_not_see_each_other() {
+    let n_arms = 5;
+    let sector = |p: Vector2| (p.y.atan2(p.x).rem_euclid(TAU) / TAU * f64::from(n_arms)).floor();
+    let arm = |k: i32| {
+        let tip = riss::math::direction(TAU * f64::from(k) / f64::from(n_arms)) * 0.48;
+        crack(&[(0.0, 0.0), (tip.x, tip.y)], [Tip; 2])
+    };
+    let mut model = body(rectangle((-0.5, -0.5), (0.5, 0.5)), PlaneState::Strain);
+    model.cracks = (0..n_arms).map(arm).collect();
+    join(&mut model.cracks, 1e-9).expect("they meet in a point");
+    for smoothing in smoothings().into_iter().chain([SmoothingSettings::VISIBILITY]) {
+        let mls = approximation(&model, 3, smoothing);
+        let (mut random, mut around) = (Random(3), Surroundings::default());
+        for _ in 0..200 {
+            let at = Vector2::new(random.between(-0.05, 0.05), random.between(-0.05, 0.05));
+            let found = weights(&mls, at, &mut around);
+            assert!(found.len() >= 3);
+            for (node, _) in found {
+                let sight = mls.nodes().sights[node as usize];
+                assert_eq!(sector(sight), sector(at), "{smoothing:?}: {at} sees {sight}");
+            }
+        }
+    }
 }
 
 /// Points all over the body, close to tips and corners too.
@@ -172,9 +247,9 @@ fn evaluate(mls: &MovingLeastSquares, at: Vector2) -> ShapeFunctions<2> {
 
 #[test]
 fn shape_functions_are_consistent_and_their_derivatives_are_those_of_differences() {
-    for smoothing in smoothings() {
+    for (smoothing, make) in smoothings().into_iter().flat_map(|s| BODIES.map(|b| (s, b))) {
         let mut random = Random(5);
-        let model = random_body(&mut random);
+        let model = make(&mut random);
         let mls = approximation(&model, 5, smoothing);
         let mut compared = 0;
         for at in points(&model, &mut random) {

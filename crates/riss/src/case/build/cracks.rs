@@ -1,9 +1,11 @@
-//! Crack paths: ends put on the boundary or recognized as tips, everything between them inside the body.
+//! Crack paths: ends put on the boundary or recognized as tips, everything between them inside the body; joined where they
+//! meet.
 
 use super::crossings::{Segment, first_contact, folds_back};
 use super::outline::vector;
 use super::report::Report;
 use crate::case::schema;
+use crate::crack::meetings::{Meeting, join};
 use crate::crack::{CrackPath, EndKind};
 use crate::geometry::curve::Curve;
 use crate::math::Vector2;
@@ -36,8 +38,7 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
             paths.push((index, CrackPath { name, vertices: builder.vertices, ends: builder.ends }));
         }
     }
-    check_apart(&paths, size, report);
-    paths.into_iter().map(|p| p.1).collect()
+    join_all(paths, size, report)
 }
 
 fn vertices(crack: &schema::Crack, key: &str, domain: &Domain, report: &mut Report) -> Option<(Vec<Vector2>, String)> {
@@ -243,15 +244,25 @@ fn segments(vertices: &[Vector2], chain: usize) -> Vec<Segment> {
     all.map(|(edge, w)| Segment { ends: (w[0], w[1]), chain, edge }).collect()
 }
 
-fn check_apart(paths: &[(usize, CrackPath)], size: f64, report: &mut Report) {
-    let all: Vec<Segment> = paths.iter().enumerate().flat_map(|(c, p)| segments(&p.1.vertices, c)).collect();
-    let contact = first_contact(&all, ON_BOUNDARY * size, |i, j| all[i].chain != all[j].chain);
-    if let Some((i, j)) = contact {
-        let (s, t) = (&all[i], &all[j]);
-        let cross = crate::geometry::predicates::segments_cross(s.ends.0, s.ends.1, t.ends.0, t.ends.1);
-        let (index, path) = (paths[t.chain].0, &paths[s.chain].1);
-        let verb = if cross { "crosses" } else { "touches" };
-        let message = format!("this crack {verb} the crack `{}`; cracks that meet are not supported yet", path.name);
-        report.error(format!("crack[{index}]"), message);
+/// Joins cracks that meet; says where.
+fn join_all(paths: Vec<(usize, CrackPath)>, size: f64, report: &mut Report) -> Vec<CrackPath> {
+    let (keys, mut cracks): (Vec<usize>, Vec<CrackPath>) = paths.into_iter().unzip();
+    match join(&mut cracks, ON_BOUNDARY * size) {
+        Ok(meetings) => {
+            for Meeting { place, cracks: met } in meetings {
+                let others: Vec<String> =
+                    met[..met.len() - 1].iter().map(|c| format!("`{}`", cracks[*c].name)).collect();
+                let message = format!("this crack meets {} at ({:.6}, {:.6})", others.join(", "), place.x, place.y);
+                report.note(format!("crack[{}]", keys[met[met.len() - 1]]), message);
+            }
+        }
+        Err(overlap) => {
+            let [a, b] = overlap.cracks;
+            let message = format!("this crack runs along the crack `{}`", cracks[a].name);
+            report
+                .error(format!("crack[{}]", keys[b]), message)
+                .suggest("leave out the stretch that both have in common");
+        }
     }
+    cracks
 }

@@ -3,7 +3,7 @@
 use super::outline::vector;
 use super::report::Report;
 use crate::analysis::Settings;
-use crate::approximation::settings::Basis;
+use crate::approximation::settings::{ApproximationSettings, Basis, CrackSmoothing, HoleSmoothing, SupportShape};
 use crate::case::schema::{self, CaseFile, NodeFile};
 use crate::integration::settings::Scheme;
 use crate::model::Domain;
@@ -65,6 +65,31 @@ fn check_approximation(file: &CaseFile, report: &mut Report) {
         && enrichment.r1.is_some_and(|r1| r1 > r2)
     {
         report.error("approximation.enrichment.r1", "must not exceed `r2`");
+    }
+    check_smoothing(&file.approximation, report);
+}
+
+fn check_smoothing(approximation: &ApproximationSettings, report: &mut Report) {
+    let key = "approximation.smoothing";
+    let smoothing = &approximation.smoothing;
+    if let CrackSmoothing::Transparency { kappa, .. } = smoothing.cracks() {
+        report.positive(format!("{key}.cracks.transparency.kappa"), kappa);
+    }
+    if let HoleSmoothing::Diffraction { lambda } = smoothing.holes() {
+        let (wanted, reason) = match smoothing.cracks() {
+            CrackSmoothing::Diffraction { lambda } => (lambda, "the same as around cracks"),
+            CrackSmoothing::Transparency { .. } => (1.0, "1, as cracks are transparent"),
+            CrackSmoothing::Visibility | CrackSmoothing::SeeThrough => (lambda, ""),
+        };
+        if lambda != wanted {
+            let message = format!("{lambda} around holes, {wanted} around cracks");
+            report.error(format!("{key}.holes.diffraction.lambda"), message).allow(reason);
+        }
+    }
+    let is_visibility = smoothing.cracks.is_none_or(|c| c == CrackSmoothing::Visibility)
+        && smoothing.holes.is_none_or(|h| h == HoleSmoothing::Visibility);
+    if approximation.support == SupportShape::Rectangular && !is_visibility {
+        report.error(key, "rectangular supports know visibility only").suggest("use `support = \"circular\"`");
     }
 }
 
