@@ -4,8 +4,8 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use riss::analysis::{Settings, Silent, discretize};
 use riss::approximation::moving_least_squares::Derivatives;
 use riss::approximation::{
-    ApproximationSettings, Basis, CrackSmoothing, MovingLeastSquares, ShapeFunctions, SmoothingSettings, Surroundings,
-    WeightFunction,
+    ApproximationSettings, Basis, CrackSmoothing, Enrichment, EnrichmentKind, EnrichmentSettings, MovingLeastSquares,
+    ShapeFunctions, SmoothingSettings, Surroundings, WeightFunction,
 };
 use riss::crack::{CrackPath, EndKind};
 use riss::geometry::aabb::Aabb;
@@ -19,8 +19,23 @@ use riss::nodes::settings::{Layout, Structured};
 use riss::system::Discretization;
 use std::hint::black_box;
 
+/// The regions of a crack whose tip lies among the points of the bench.
+fn enrichment(kind: EnrichmentKind) -> Option<Enrichment> {
+    let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (0.0, 40.0)].map(|(x, y)| Vector2::new(x, y));
+    let edges = (0..4).map(|i| Curve::Line { start: corners[i], end: corners[(i + 1) % 4] }).collect();
+    let vertices = vec![Vector2::new(0.0, 20.3), Vector2::new(20.3, 20.3)];
+    let path = CrackPath { name: "crack".into(), vertices, ends: [EndKind::Mouth, EndKind::Tip] };
+    let model = Model { cracks: vec![path], ..Model::plain(Domain::new(edges, vec![])) };
+    Enrichment::of_model(&model, &EnrichmentSettings { kind, ..EnrichmentSettings::default() }).0
+}
+
 /// A jittered grid of unit spacing; a support radius of 2.5 gives 20 neighbors on average.
-fn approximation(basis: Basis, weight_function: WeightFunction, radius: f64) -> MovingLeastSquares {
+fn approximation(
+    basis: Basis,
+    kind: EnrichmentKind,
+    weight_function: WeightFunction,
+    radius: f64,
+) -> MovingLeastSquares {
     let n = 40;
     let mut nodes = Nodes::default();
     for i in 0..n * n {
@@ -30,18 +45,21 @@ fn approximation(basis: Basis, weight_function: WeightFunction, radius: f64) -> 
     nodes.sights = nodes.positions.clone();
     nodes.support_radii = vec![Vector2::repeat(radius); n * n];
     let settings = ApproximationSettings { basis, weight_function, ..ApproximationSettings::default() };
-    MovingLeastSquares::new(nodes, Obstacles::new(vec![]), settings)
+    // Without the crack as an obstacle: what is measured is the basis.
+    MovingLeastSquares::new(nodes, Obstacles::new(vec![]), settings).enriched(enrichment(kind))
 }
 
 fn bench(c: &mut Criterion) {
     let mut group = c.benchmark_group("shape_functions");
     let cases = [
-        ("linear_quartic_20", Basis::Linear, WeightFunction::QuarticSpline, 2.52),
-        ("linear_gaussian_20", Basis::Linear, WeightFunction::Gaussian, 2.52),
-        ("quadratic_quartic_30", Basis::Quadratic, WeightFunction::QuarticSpline, 3.1),
+        ("linear_quartic_20", Basis::Linear, EnrichmentKind::None, WeightFunction::QuarticSpline, 2.52),
+        ("linear_gaussian_20", Basis::Linear, EnrichmentKind::None, WeightFunction::Gaussian, 2.52),
+        ("quadratic_quartic_30", Basis::Quadratic, EnrichmentKind::None, WeightFunction::QuarticSpline, 3.1),
+        ("full_quartic_20", Basis::Linear, EnrichmentKind::IntrinsicFull, WeightFunction::QuarticSpline, 2.52),
+        ("radial_quartic_20", Basis::Linear, EnrichmentKind::IntrinsicRadial, WeightFunction::QuarticSpline, 2.52),
     ];
-    for (name, basis, function, radius) in cases {
-        let mls = approximation(basis, function, radius);
+    for (name, basis, kind, function, radius) in cases {
+        let mls = approximation(basis, kind, function, radius);
         let points: Vec<Vector2> =
             (0..64).map(|k| Vector2::new(20.0 + 0.125 * (k % 8) as f64, 20.0 + 0.125 * (k / 8) as f64)).collect();
         let (mut around, mut shape) = (Surroundings::default(), ShapeFunctions::default());

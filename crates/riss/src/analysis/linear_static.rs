@@ -57,6 +57,7 @@ pub(super) fn solve_step(
             (solve_on(model, settings, discrete, &mut warnings)?, vec![])
         }
     };
+    discrete.notes.iter().for_each(|n| warnings.add(n.clone()));
     if let CrackSmoothing::Transparency { .. } = settings.approximation.resolved_smoothing().cracks() {
         let n = nodes_too_near(model, &discrete);
         if n > 0 {

@@ -154,7 +154,7 @@ fn overshoot(_: Vector2, outward: Vector2) -> Vector2 {
 }
 
 /// From a mouth straight on to the far side of the hole, so that nothing sees around the mouth through it.
-fn through_void(model: &Model, mouth: Vector2, outward: Vector2) -> Vector2 {
+pub(super) fn through_void(model: &Model, mouth: Vector2, outward: Vector2) -> Vector2 {
     let size = model.domain.aabb().size().norm();
     let all = outward.normalize() * size;
     let cuts = model.domain.edges.iter().flat_map(|e| e.meetings(mouth, mouth + all, 1e-9 * size));

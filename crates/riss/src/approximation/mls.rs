@@ -31,7 +31,7 @@ pub struct Neighborhood<const D: usize> {
     pub(super) relative: Vec<f64>,
     /// Inverse squared support radii, while weights are computed.
     pub(super) inverse: Vec<f64>,
-    basis: Vec<f64>,
+    pub(super) basis: Vec<f64>,
 }
 
 impl<const D: usize> Default for Neighborhood<D> {
@@ -97,7 +97,7 @@ pub fn quality<const D: usize>(basis: Basis, near: &mut Neighborhood<D>) -> f64 
 
 /// Basis values at a scaled offset: 1, then coordinates, then products.
 #[inline]
-fn basis_at<const D: usize, const M: usize>(xi: [f64; D]) -> [f64; M] {
+pub(super) fn basis_at<const D: usize, const M: usize>(xi: [f64; D]) -> [f64; M] {
     let mut p = [0.0; M];
     p[0] = 1.0;
     p[1..=D].copy_from_slice(&xi);
@@ -115,7 +115,7 @@ fn basis_at<const D: usize, const M: usize>(xi: [f64; D]) -> [f64; M] {
 
 /// Inverse of the weighted mean distance of the neighbors.
 #[inline]
-fn scale<const D: usize>(near: &Neighborhood<D>) -> f64 {
+pub(super) fn scale<const D: usize>(near: &Neighborhood<D>) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for (k, w) in near.weights.iter().enumerate() {
         sum += w * near.offsets.iter().map(|o| o[k] * o[k]).sum::<f64>();
@@ -185,7 +185,7 @@ fn fit<const D: usize, const M: usize>(near: &mut Neighborhood<D>, shape: &mut S
 }
 
 #[inline]
-fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
+pub(super) fn dot<const M: usize>(a: &[f64; M], b: &[f64; M]) -> f64 {
     let mut sum = 0.0;
     for i in 0..M {
         sum += a[i] * b[i];

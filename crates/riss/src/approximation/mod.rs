@@ -1,23 +1,28 @@
 //! Shape functions. Has never heard of materials or loads.
 //!
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
-//! from the [`weight_function`] of each visible neighbor and the fit in [`mls`].
+//! from the [`weight_function`] of each visible neighbor and the fit in [`mls`], near tips with the functions of an
+//! [`enrichment`].
 
 mod detour;
 pub mod discontinuity;
+mod enriched_fit;
+pub mod enrichment;
 mod fade;
 pub mod mls;
 pub mod moving_least_squares;
 pub mod settings;
 mod sight;
+pub mod tip_functions;
 mod ways;
 pub mod weight_function;
 
 use crate::math::{Matrix, Vector};
+pub use enrichment::Enrichment;
 pub use moving_least_squares::{MovingLeastSquares, Surroundings};
 pub use settings::{
-    ApproximationSettings, Basis, CrackSmoothing, HoleSmoothing, SmoothingSettings, SpacingFrom, SupportShape,
-    WeightFunction,
+    ApproximationSettings, Basis, CrackSmoothing, EnrichmentKind, EnrichmentSettings, HoleSmoothing, Ramp,
+    SmoothingSettings, SpacingFrom, SupportShape, WeightFunction,
 };
 
 /// Shape functions at one point. A buffer that is refilled, one per thread.

@@ -1,7 +1,10 @@
 //! The moving least squares approximation over the nodes of a body in the plane, around cracks and holes.
 
 use super::ShapeFunctions;
+use super::detour::Jet;
 use super::discontinuity::Barriers;
+use super::enriched_fit::fit_enriched_into;
+use super::enrichment::{Enrichment, EnrichmentBuffer, Place, TipPoint};
 use super::mls::{Neighborhood, fit_into, quality};
 use super::settings::{ApproximationSettings, SupportShape, WeightFunction};
 use super::sight::{Candidate, Sight, SightBuffer, View};
@@ -11,6 +14,11 @@ use crate::geometry::obstacles::Obstacles;
 use crate::geometry::tree::BoxTree;
 use crate::math::Vector2;
 use crate::nodes::Nodes;
+
+/// Moment matrices with a smaller scaled pivot than this are poor.
+pub const POOR_PIVOT: f64 = 0.02;
+/// Enriched shape functions whose magnitudes sum to more than this are poor.
+const LARGE_SUM: f64 = 3.5;
 
 /// Which derivatives are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +42,11 @@ pub struct Surroundings {
     inverse: Vec<f64>,
     /// Buffer of the fit.
     pub near: Neighborhood<2>,
+    /// Regions around tips.
+    enrichment: EnrichmentBuffer,
+    tip: TipPoint,
+    /// Plain shape functions, where they are joined to enriched ones.
+    plain: ShapeFunctions<2>,
 }
 
 /// Moving least squares over nodes that do not act across obstacles [EFG, sections 2.1, 2.2, 4].
@@ -43,6 +56,7 @@ pub struct MovingLeastSquares {
     sight: Sight,
     settings: ApproximationSettings,
     supports: BoxTree<2>,
+    enrichment: Option<Enrichment>,
 }
 
 impl MovingLeastSquares {
@@ -50,7 +64,22 @@ impl MovingLeastSquares {
     pub fn new(nodes: Nodes<2>, barriers: impl Into<Barriers>, settings: ApproximationSettings) -> Self {
         let boxes: Vec<_> =
             nodes.positions.iter().zip(&nodes.support_radii).map(|(p, r)| Aabb::around(*p, *r)).collect();
-        Self { supports: BoxTree::new(&boxes), sight: Sight::new(barriers.into(), &nodes), nodes, settings }
+        let (supports, sight) = (BoxTree::new(&boxes), Sight::new(barriers.into(), &nodes));
+        Self { supports, sight, nodes, settings, enrichment: None }
+    }
+
+    /// Adds the functions of tips to the basis around them.
+    pub fn enriched(mut self, enrichment: Option<Enrichment>) -> Self {
+        self.enrichment = enrichment;
+        if let Some(enrichment) = &mut self.enrichment {
+            enrichment.visit_nodes(&self.nodes);
+        }
+        self
+    }
+
+    /// The enriched regions, if there are any.
+    pub fn enrichment(&self) -> Option<&Enrichment> {
+        self.enrichment.as_ref()
     }
 
     /// The nodes.
@@ -78,6 +107,9 @@ impl MovingLeastSquares {
             reach = reach.including(self.nodes.sights[i as usize]);
         }
         self.sight.survey(&reach, &around.candidates, &mut around.sight);
+        if let Some(enrichment) = &self.enrichment {
+            enrichment.survey(bounds, &mut around.enrichment);
+        }
         let [xs, ys] = &mut around.positions;
         xs.clear();
         ys.clear();
@@ -123,7 +155,7 @@ impl MovingLeastSquares {
         around: &mut Surroundings,
         mut relative: impl FnMut(&Candidate, &mut SightBuffer) -> f64,
     ) {
-        let Surroundings { candidates, sight, positions, inverse, near } = around;
+        let Surroundings { candidates, sight, positions, inverse, near, .. } = around;
         let n = candidates.len();
         near.resize(n);
         let [xs, ys] = positions;
@@ -199,10 +231,40 @@ impl MovingLeastSquares {
         shape: &mut ShapeFunctions<2>,
     ) -> Result<()> {
         self.gather(at, sight, derivatives, around);
-        if fit_into(self.settings.basis, &mut around.near, shape) {
-            return Ok(());
+        let fits = match self.place(at, around) {
+            Some(place) => self.fit_in_region(&place, [at, sight], around, shape),
+            None => fit_into(self.settings.basis, &mut around.near, shape),
+        };
+        if fits { Ok(()) } else { Err(self.singular(at, around)) }
+    }
+
+    /// The enriched region around a point that was surveyed.
+    #[inline]
+    fn place(&self, at: Vector2, around: &Surroundings) -> Option<(Place, &Enrichment)> {
+        let enrichment = self.enrichment.as_ref()?;
+        Some((enrichment.place(at, &around.enrichment)?, enrichment))
+    }
+
+    /// Shape functions at a point whose neighbors are gathered, enriched by the share that the place has.
+    fn fit_in_region(
+        &self,
+        (place, enrichment): &(Place, &Enrichment),
+        view: [Vector2; 2],
+        around: &mut Surroundings,
+        shape: &mut ShapeFunctions<2>,
+    ) -> bool {
+        let Surroundings { candidates, near, enrichment: buffer, tip, plain, .. } = around;
+        enrichment.fill(place, view, candidates, &near.nodes, buffer, tip);
+        if !fit_enriched_into(self.settings.basis, enrichment.functions(), near, tip, shape) {
+            return false;
         }
-        Err(self.singular(at, around.near.nodes.len()))
+        if place.share.value < 1.0 {
+            if !fit_into(self.settings.basis, near, plain) {
+                return false;
+            }
+            join(shape, plain, &place.share);
+        }
+        true
     }
 
     /// Shape functions at any point.
@@ -218,22 +280,60 @@ impl MovingLeastSquares {
         self.evaluate_surveyed(at, sight, derivatives, around, shape)
     }
 
-    /// Quality of the moment matrix at the point gathered last.
-    pub fn quality(&self, around: &mut Surroundings) -> f64 {
-        quality(self.settings.basis, &mut around.near)
-    }
-
-    /// Least number of neighbors of a fit.
-    pub fn n_needed(&self) -> usize {
-        match self.settings.basis {
-            super::Basis::Linear => 3,
-            super::Basis::Quadratic => 6,
+    /// How well the neighbors that were gathered last determine the fit, seen from `sight`: the smallest scaled pivot
+    /// of the moment matrix of polynomials, and in enriched regions a measure of the size of the shape functions. 0 if
+    /// there is no fit.
+    pub fn quality(
+        &self,
+        at: Vector2,
+        sight: Vector2,
+        around: &mut Surroundings,
+        shape: &mut ShapeFunctions<2>,
+    ) -> f64 {
+        if around.near.nodes.len() < self.n_needed(at, around) {
+            return 0.0;
+        }
+        match self.place(at, around) {
+            Some(place) if self.fit_in_region(&place, [at, sight], around, shape) => {
+                LARGE_SUM * POOR_PIVOT / shape.values.iter().map(|v| v.abs()).sum::<f64>()
+            }
+            Some(_) => 0.0,
+            None => quality(self.settings.basis, &mut around.near),
         }
     }
 
+    /// Least number of neighbors of a fit at a point that was surveyed.
+    pub fn n_needed(&self, at: Vector2, around: &Surroundings) -> usize {
+        let polynomials = match self.settings.basis {
+            super::Basis::Linear => 3,
+            super::Basis::Quadratic => 6,
+        };
+        polynomials + self.place(at, around).map_or(0, |(_, enrichment)| enrichment.functions().count())
+    }
+
+    /// Whether a point that was surveyed lies in an enriched region.
+    pub fn is_enriched(&self, at: Vector2, around: &Surroundings) -> bool {
+        self.place(at, around).is_some()
+    }
+
     #[cold]
-    fn singular(&self, point: Vector2, n_neighbors: usize) -> Error {
-        Error::SingularMomentMatrix { point, n_neighbors, needed: self.n_needed() }
+    fn singular(&self, point: Vector2, around: &Surroundings) -> Error {
+        let (n_neighbors, needed) = (around.near.nodes.len(), self.n_needed(point, around));
+        Error::SingularMomentMatrix { point, n_neighbors, needed }
+    }
+}
+
+/// `R φ + (1 - R) ψ` for enriched `φ` and plain `ψ` of the same neighbors [EFG, Eq. 56].
+fn join(shape: &mut ShapeFunctions<2>, plain: &ShapeFunctions<2>, share: &Jet) {
+    for k in 0..shape.neighbors.len() {
+        let (value, gradient) = (shape.values[k] - plain.values[k], shape.gradients[k] - plain.gradients[k]);
+        if let Some(second) = shape.second_derivatives.get_mut(k) {
+            let own = plain.second_derivatives[k];
+            let mixed = share.gradient * gradient.transpose();
+            *second = own + (*second - own) * share.value + mixed + mixed.transpose() + share.second * value;
+        }
+        shape.gradients[k] = plain.gradients[k] + gradient * share.value + share.gradient * value;
+        shape.values[k] = plain.values[k] + value * share.value;
     }
 }
 

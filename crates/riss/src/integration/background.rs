@@ -4,9 +4,9 @@
 //! coarse triangles of the body, which end at boundary and cracks.
 
 use super::IntegrationPoint;
-use super::cells::{EdgePoint, IntegrationCells, edge_rule};
-use super::rules::{collapsed_rule, triangle_rule};
-use super::settings::IntegrationSettings;
+use super::cells::{EdgePoint, IntegrationCells, edge_rule, rule_at_tip};
+use super::rules::{graded_line, triangle_rule};
+use super::settings::{IntegrationSettings, TipRule};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{area, edges};
@@ -94,7 +94,7 @@ impl IntegrationCells {
                         self.points.push(IntegrationPoint { position, weight });
                     }
                 }
-                self.add_outline(&corners, square.center(), settings);
+                self.add_outline(&corners, square.center(), &[], settings);
                 self.close(corners.to_vec());
             }
             return;
@@ -118,7 +118,7 @@ impl IntegrationCells {
         let tip =
             tips.iter().find(|t| edges(piece).all(|(p, q)| cross(q - p, **t - p) >= -1e-9 * size * (q - p).norm()));
         let (apex, rule) = match tip {
-            Some(tip) => (*tip, collapsed_rule(settings.tip_points)),
+            Some(tip) => (*tip, rule_at_tip(settings)),
             None => (center, triangle_rule(settings.points.min(3))),
         };
         for (p, q) in edges(piece) {
@@ -130,14 +130,17 @@ impl IntegrationCells {
                 }
             }
         }
-        self.add_outline(piece, center, settings);
+        self.add_outline(piece, center, tips, settings);
         self.close(piece.to_vec());
     }
 
-    fn add_outline(&mut self, corners: &[Vector2], center: Vector2, settings: &IntegrationSettings) {
+    fn add_outline(&mut self, corners: &[Vector2], center: Vector2, tips: &[Vector2], settings: &IntegrationSettings) {
         let line = edge_rule(settings);
+        let at_tip = graded_line(settings.tip_points);
         for (p, q) in edges(corners) {
-            for &(t, w) in &line {
+            let [starts, stops] = [p, q].map(|e| settings.tip_rule == TipRule::Graded && tips.contains(&e));
+            for &(t, w) in if starts || stops { &at_tip } else { &line } {
+                let t = if stops && !starts { 1.0 - t } else { t };
                 let position = p * (1.0 - t) + q * t;
                 // Every point sees from inside its own cell, since any edge may lie on a crack.
                 let sight = position + (center - position) * SIGHT_SHIFT;

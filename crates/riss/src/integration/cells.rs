@@ -2,8 +2,8 @@
 //! (element quadrature [EFG, section 3.2]).
 
 use super::IntegrationPoint;
-use super::rules::{collapsed_rule, triangle_rule};
-use super::settings::{IntegrationSettings, Scheme};
+use super::rules::{collapsed_rule, graded_line, graded_rule, triangle_rule};
+use super::settings::{IntegrationSettings, Scheme, TipRule};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::curve::Curve;
 use crate::math::gauss_legendre::gauss_legendre;
@@ -122,6 +122,8 @@ struct Builder<'a> {
     line: Vec<(f64, f64)>,
     square: usize,
     square_at_tip: usize,
+    /// Points along an edge that starts at a tip, where they are graded.
+    line_at_tip: Option<Vec<(f64, f64)>>,
     cells: IntegrationCells,
 }
 
@@ -143,7 +145,8 @@ impl<'a> Builder<'a> {
             left_of: left_of(triangulation),
             is_tip,
             regular: triangle_rule(settings.points),
-            at_tip: collapsed_rule(settings.tip_points),
+            at_tip: rule_at_tip(settings),
+            line_at_tip: (settings.tip_rule == TipRule::Graded).then(|| graded_line(settings.tip_points)),
             line: edge_rule(settings),
             square: settings.points,
             square_at_tip: settings.tip_points,
@@ -176,13 +179,22 @@ impl<'a> Builder<'a> {
 
     fn add_rectangle(&mut self, corners: [u32; 4]) {
         let [a, b, c, d] = corners.map(|v| self.triangulation.position(v));
-        let n = if corners.iter().any(|v| self.is_tip[*v as usize]) { self.square_at_tip } else { self.square };
-        let rule = gauss_legendre(n);
-        let area = cross(b - a, d - a);
-        for &(s, ws) in &rule {
-            for &(t, wt) in &rule {
-                let position = a + (b - a) * s + (d - a) * t;
-                self.cells.points.push(IntegrationPoint { position, weight: ws * wt * area });
+        let tip = corners.iter().position(|v| self.is_tip[*v as usize]);
+        match (tip, &self.line_at_tip) {
+            (Some(k), Some(_)) => {
+                let [tip, p, q, r] = [0, 1, 2, 3].map(|j| [a, b, c, d][(k + j) % 4]);
+                self.add_straight([tip, p, q], true);
+                self.add_straight([tip, q, r], true);
+            }
+            (tip, _) => {
+                let rule = gauss_legendre(if tip.is_some() { self.square_at_tip } else { self.square });
+                let area = cross(b - a, d - a);
+                for &(s, ws) in &rule {
+                    for &(t, wt) in &rule {
+                        let position = a + (b - a) * s + (d - a) * t;
+                        self.cells.points.push(IntegrationPoint { position, weight: ws * wt * area });
+                    }
+                }
             }
         }
         for k in 0..4 {
@@ -247,13 +259,27 @@ impl<'a> Builder<'a> {
             let [start, end] = ends.map(|v| self.triangulation.position(v));
             Curve::Line { start, end }
         });
-        for &(t, w) in &self.line {
+        let [starts, stops] = ends.map(|v| self.is_tip[v as usize]);
+        let line = match &self.line_at_tip {
+            Some(line) if starts || stops => line,
+            Some(_) | None => &self.line,
+        };
+        for &(t, w) in line {
+            let t = if stops && !starts { 1.0 - t } else { t };
             let (position, velocity) = (curve.point(t), curve.velocity(t));
             let right = -turn_left(velocity);
             let sight = if inner { position } else { position - right * SIGHT_SHIFT };
             let normal = if forward { -right * w } else { right * w };
             self.cells.edge_points.push(EdgePoint { position, sight, normal });
         }
+    }
+}
+
+/// Points in a triangle whose first corner is a tip.
+pub(super) fn rule_at_tip(settings: &IntegrationSettings) -> Vec<([f64; 3], f64)> {
+    match settings.tip_rule {
+        TipRule::Automatic | TipRule::Product => collapsed_rule(settings.tip_points),
+        TipRule::Graded => graded_rule(settings.tip_points),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Integration points along crack faces: each sees the body from both sides.
 
 use super::cells::edge_rule;
-use super::settings::IntegrationSettings;
+use super::rules::graded_line;
+use super::settings::{IntegrationSettings, Scheme, TipRule};
 use crate::geometry::aabb::Aabb;
 use crate::math::{Vector2, turn_left};
 use crate::model::Model;
@@ -56,7 +57,7 @@ impl CrackFaceElement {
 
 /// Elements along every crack whose faces something acts on, in the order of cracks and paths.
 pub fn crack_face_elements(model: &Model, chains: &Chains, settings: &IntegrationSettings) -> Vec<CrackFaceElement> {
-    let line = edge_rule(settings);
+    let rule = Rule::new(model, settings);
     let mut elements: Vec<CrackFaceElement> = vec![];
     for pieces in chains.crack_pieces.chunk_by(|a, b| a.crack == b.crack) {
         if !model.loads_faces(pieces[0].crack) {
@@ -71,12 +72,37 @@ pub fn crack_face_elements(model: &Model, chains: &Chains, settings: &Integratio
             let mut start = 0.0;
             for piece in of_stretch {
                 let range = [start / total, (start + length(piece)) / total];
-                elements.push(element(piece.crack, ends(piece), (first + k, range), &line));
+                elements.push(element(piece.crack, ends(piece), (first + k, range), &rule));
                 start += length(piece);
             }
         }
     }
     elements
+}
+
+/// Points along pieces as the cells beside them have them.
+struct Rule {
+    line: Vec<(f64, f64)>,
+    /// From a tip on, where they are graded.
+    graded: Vec<(f64, f64)>,
+    tips: Vec<Vector2>,
+}
+
+impl Rule {
+    fn new(model: &Model, settings: &IntegrationSettings) -> Self {
+        let (line, graded) = (edge_rule(settings), graded_line(settings.tip_points));
+        let is_graded = settings.tip_rule == TipRule::Graded && !matches!(settings.scheme, Scheme::Nodal { .. });
+        let tips = if is_graded { model.tips().iter().map(|t| t.1.position).collect() } else { vec![] };
+        Self { line, graded, tips }
+    }
+
+    fn between(&self, ends: [Vector2; 2]) -> Vec<(f64, f64)> {
+        match ends.map(|end| self.tips.contains(&end)) {
+            [true, _] => self.graded.clone(),
+            [false, true] => self.graded.iter().map(|(t, w)| (1.0 - t, *w)).collect(),
+            [false, false] => self.line.clone(),
+        }
+    }
 }
 
 /// Where stretches begin and end among the pieces of a crack.
@@ -90,12 +116,7 @@ fn knots(n_pieces: usize) -> Vec<usize> {
     knots
 }
 
-fn element(
-    crack: usize,
-    ends: [Vector2; 2],
-    (stretch, range): (usize, [f64; 2]),
-    line: &[(f64, f64)],
-) -> CrackFaceElement {
+fn element(crack: usize, ends: [Vector2; 2], (stretch, range): (usize, [f64; 2]), rule: &Rule) -> CrackFaceElement {
     let e = ends[1] - ends[0];
     let left = turn_left(e);
     let point = |&(t, w): &(f64, f64)| {
@@ -108,7 +129,7 @@ fn element(
             along: range[0] + (range[1] - range[0]) * t,
         }
     };
-    CrackFaceElement { crack, ends, stretch, range, points: line.iter().map(point).collect() }
+    CrackFaceElement { crack, ends, stretch, range, points: rule.between(ends).iter().map(point).collect() }
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::math::Vector;
 pub use boundary::{BoundaryElement, BoundaryPoint, boundary_elements};
 pub use cells::{EdgePoint, IntegrationCells};
 pub use crack_faces::{CrackFaceElement, CrackFacePoint, crack_face_elements};
-pub use settings::{GradientCorrection, IntegrationSettings, Scheme};
+pub use settings::{GradientCorrection, IntegrationSettings, Scheme, TipRule};
 
 /// A position with its integration weight [length^D].
 #[derive(Clone, Copy, Debug, PartialEq)]

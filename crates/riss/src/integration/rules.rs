@@ -45,6 +45,24 @@ pub fn collapsed_rule(n: usize) -> Vec<([f64; 3], f64)> {
     rule
 }
 
+/// `n`×`n` points collapsed to the first corner, with squares of Gauss points away from it: exact for `r^(k/2)` up to
+/// a high degree, from `k = -1` on [Duffy1982].
+pub fn graded_rule(n: usize) -> Vec<([f64; 3], f64)> {
+    let line = gauss_legendre(n);
+    let mut rule = Vec::with_capacity(n * n);
+    for &(s, ws) in &graded_line(n) {
+        for &(t, wt) in &line {
+            rule.push(([1.0 - s, s * (1.0 - t), s * t], 2.0 * s * ws * wt));
+        }
+    }
+    rule
+}
+
+/// Points on `[0, 1]` with weights, the squares of Gauss points.
+pub fn graded_line(n: usize) -> Vec<(f64, f64)> {
+    gauss_legendre(n).into_iter().map(|(s, w)| (s * s, 2.0 * s * w)).collect()
+}
+
 fn orbit3(a: f64, w: f64) -> Vec<([f64; 3], f64)> {
     let b = 1.0 - 2.0 * a;
     vec![([b, a, a], w), ([a, b, a], w), ([a, a, b], w)]
@@ -61,6 +79,25 @@ mod tests {
 
     fn factorial(n: u32) -> f64 {
         (1..=n).map(f64::from).product()
+    }
+
+    #[test]
+    fn graded_rules_are_exact_for_roots_of_the_distance_to_the_corner() {
+        // ∫ r^(k/2) over the triangle (0, 0), (1, -1), (1, 1), over its area 1: ∫ cos^(-2-k/2) dφ / (2 + k/2).
+        let exact = |k: i32| {
+            let angular = |phi: f64| phi.cos().powf(-2.0 - 0.5 * k as f64);
+            let n = 20_000;
+            let h = 0.25 * std::f64::consts::PI / n as f64;
+            let sum: f64 = (0..n).map(|i| angular((i as f64 + 0.5) * h)).sum();
+            2.0 * sum * h / (2.0 + 0.5 * k as f64)
+        };
+        for k in [-2, -1, 0, 1, 3] {
+            let r = |l: &[f64; 3]| (l[1] + l[2]).hypot(l[2] - l[1]);
+            let sum: f64 = graded_rule(12).iter().map(|(l, w)| w * r(l).powf(0.5 * k as f64)).sum();
+            assert!((sum - exact(k)).abs() < 1e-8, "{k}: {sum} {}", exact(k));
+            let length: f64 = graded_line(4).iter().map(|(s, w)| w * s.powf(0.5 * k as f64)).sum();
+            assert!(k == -2 || (length * (1.0 + 0.5 * k as f64) - 1.0).abs() < 1e-14);
+        }
     }
 
     #[test]

@@ -15,14 +15,43 @@ pub struct IntegrationSettings {
     /// The same in cells at a crack tip.
     #[schemars(range(min = 1, max = 30))]
     pub tip_points: usize,
+    /// Where points stand in cells at a crack tip.
+    pub tip_rule: TipRule,
     /// Whether gradients are corrected so that each cell satisfies the divergence theorem.
     pub gradient_correction: GradientCorrection,
 }
 
 impl Default for IntegrationSettings {
     fn default() -> Self {
-        Self { scheme: Scheme::Elements, points: 4, tip_points: 9, gradient_correction: GradientCorrection::Cell }
+        Self {
+            scheme: Scheme::Elements,
+            points: 4,
+            tip_points: 9,
+            tip_rule: TipRule::Automatic,
+            gradient_correction: GradientCorrection::Cell,
+        }
     }
+}
+
+impl IntegrationSettings {
+    /// These settings with the given rule at tips, if that is left to choose.
+    pub fn at_tips(&self, rule: TipRule) -> Self {
+        let tip_rule = if self.tip_rule == TipRule::Automatic { rule } else { self.tip_rule };
+        Self { tip_rule, ..*self }
+    }
+}
+
+/// Rule in cells at a crack tip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TipRule {
+    /// Graded with enrichment, else product.
+    Automatic,
+    /// Gauss points in each direction; triangles are squares collapsed to the tip.
+    Product,
+    /// All cells are collapsed to the tip, with distances from it that are squares of Gauss points: exact for powers of
+    /// the root of the distance [Duffy1982].
+    Graded,
 }
 
 /// The cells that carry the integration points.

@@ -1,15 +1,17 @@
 //! Everything discrete about a body, read-only once built: nodes, supports, cells, neighbor lists.
 
 use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
-use crate::approximation::moving_least_squares::{Derivatives, support_radii};
-use crate::approximation::{ApproximationSettings, CrackSmoothing, MovingLeastSquares, SpacingFrom, Surroundings};
+use crate::approximation::moving_least_squares::{Derivatives, POOR_PIVOT, support_radii};
+use crate::approximation::{
+    ApproximationSettings, CrackSmoothing, Enrichment, MovingLeastSquares, ShapeFunctions, SpacingFrom, Surroundings,
+};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
 use crate::geometry::tree::BoxTree;
 use crate::integration::cells::as_usize;
 use crate::integration::{
-    BoundaryElement, CrackFaceElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme,
+    BoundaryElement, CrackFaceElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme, TipRule,
     boundary_elements, crack_face_elements,
 };
 use crate::math::Vector2;
@@ -19,8 +21,6 @@ use crate::nodes::{Layered, Nodes, Triangulation};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Moment matrices with a smaller scaled pivot than this get more neighbors.
-const POOR_PIVOT: f64 = 0.02;
 /// Rounds of support enlargement before a poor point is taken as it is (or refused, if singular).
 const SUPPORT_ROUNDS: usize = 12;
 /// Growth of the supports around a poor point in each round.
@@ -88,6 +88,8 @@ pub struct Discretization {
     pub cell_nodes: NodeLists,
     /// Neighbors of each boundary element.
     pub boundary_nodes: NodeLists,
+    /// What could not be done as the settings say.
+    pub notes: Vec<String>,
 }
 
 impl Discretization {
@@ -106,10 +108,18 @@ impl Discretization {
         let obstacles = visibility_obstacles(model, &triangulation);
         let smoothing = approximation.resolved_smoothing();
         let barriers = barriers(model, &triangulation, &smoothing);
+        let (enrichment, notes) = Enrichment::of_model(model, &approximation.enrichment);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
+        if let Some(enrichment) = &enrichment {
+            enlarge_in_regions(&mut nodes, enrichment, approximation, grid_step);
+        }
         if smoothing.cracks() == CrackSmoothing::SeeThrough {
             join_sides(&mut nodes, &mut node_of_copy, &barriers, approximation);
         }
+        let integration = &match enrichment {
+            Some(_) => integration.at_tips(TipRule::Graded),
+            None => integration.at_tips(TipRule::Product),
+        };
         let tips: Vec<Vector2> = model.tips().iter().map(|t| t.1.position).collect();
         let mut cells = match integration.scheme {
             Scheme::Elements => {
@@ -124,9 +134,10 @@ impl Discretization {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
+        let start = MovingLeastSquares::new(nodes, barriers.clone(), *approximation).enriched(enrichment);
         let crack_faces = crack_face_elements(model, &chains, integration);
         let parts = Parts { cells: &cells, boundary: &boundary, crack_faces: &crack_faces };
-        let (approximation, lists) = safeguard(nodes, obstacles, &barriers, *approximation, &parts)?;
+        let (approximation, lists) = safeguard(start, obstacles, &barriers, &parts)?;
         let (of_cells, rest) = lists.split_at(cells.len());
         let [cell_nodes, boundary_nodes] = [of_cells, &rest[..boundary.len()]].map(NodeLists::from_lists);
         Ok(Self {
@@ -138,6 +149,7 @@ impl Discretization {
             crack_faces,
             cell_nodes,
             boundary_nodes,
+            notes,
         })
     }
 
@@ -170,6 +182,8 @@ fn cell_views(cells: &IntegrationCells, cell: usize) -> impl Iterator<Item = (Ve
     points.chain(cells.edge_points[as_usize(&cells.edge_ranges[cell])].iter().map(|p| (p.position, p.sight)))
 }
 
+type Buffer = (Surroundings, ShapeFunctions<2>);
+
 /// All that holds integration points: cells, then boundary elements, then elements of cracks.
 struct Parts<'a> {
     cells: &'a IntegrationCells,
@@ -191,12 +205,15 @@ struct Poor {
     sight: Vector2,
     quality: f64,
     n_neighbors: usize,
+    /// Least number of neighbors of a fit.
+    needed: usize,
+    is_enriched: bool,
 }
 
 fn inspect(
     approximation: &MovingLeastSquares,
     views: impl Iterator<Item = (Vector2, Vector2)>,
-    around: &mut Surroundings,
+    (around, shape): &mut Buffer,
 ) -> Inspection {
     let mut result = Inspection::default();
     let mut seen = vec![false; around.candidates.len()];
@@ -210,9 +227,11 @@ fn inspect(
             seen[k] = true;
         }
         let n_neighbors = around.near.nodes.len();
-        let quality = if n_neighbors < approximation.n_needed() { 0.0 } else { approximation.quality(around) };
+        let quality = approximation.quality(at, sight, around, shape);
         if quality < POOR_PIVOT {
-            result.poor.push(Poor { at, sight, quality, n_neighbors });
+            let needed = approximation.n_needed(at, around);
+            let is_enriched = approximation.is_enriched(at, around);
+            result.poor.push(Poor { at, sight, quality, n_neighbors, needed, is_enriched });
         }
     }
     let visible = around.candidates.iter().zip(&seen).filter(|(_, seen)| **seen);
@@ -225,26 +244,26 @@ impl Parts<'_> {
         self.cells.len() + self.boundary.len() + self.crack_faces.len()
     }
 
-    fn inspect(&self, approximation: &MovingLeastSquares, i: usize, around: &mut Surroundings) -> Inspection {
+    fn inspect(&self, approximation: &MovingLeastSquares, i: usize, buffer: &mut Buffer) -> Inspection {
         let (n_cells, n_boundary) = (self.cells.len(), self.boundary.len());
         if i < n_cells {
-            approximation.survey(&self.cells.bounds(i), around);
-            inspect(approximation, cell_views(self.cells, i), around)
+            approximation.survey(&self.cells.bounds(i), &mut buffer.0);
+            inspect(approximation, cell_views(self.cells, i), buffer)
         } else if i < n_cells + n_boundary {
             let element = &self.boundary[i - n_cells];
-            approximation.survey(&element.bounds(), around);
-            inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), around)
+            approximation.survey(&element.bounds(), &mut buffer.0);
+            inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), buffer)
         } else {
             let element = &self.crack_faces[i - n_cells - n_boundary];
-            approximation.survey(&element.bounds(), around);
+            approximation.survey(&element.bounds(), &mut buffer.0);
             let views = element.points.iter().flat_map(|p| p.sights.map(|sight| (p.position, sight)));
-            inspect(approximation, views, around)
+            inspect(approximation, views, buffer)
         }
     }
 
     /// Inspects parts by index.
     fn inspect_all(&self, approximation: &MovingLeastSquares, which: &[usize]) -> Vec<Inspection> {
-        which.par_iter().map_init(Surroundings::default, |around, &i| self.inspect(approximation, i, around)).collect()
+        which.par_iter().map_init(Buffer::default, |buffer, &i| self.inspect(approximation, i, buffer)).collect()
     }
 }
 
@@ -286,6 +305,24 @@ fn set_supports(
     nodes.support_radii = spacings.iter().map(|c| support_radii(settings.support, dilation, *c)).collect();
 }
 
+/// Nodes that reach into an enriched region have enough neighbors for the longer basis.
+fn enlarge_in_regions(
+    nodes: &mut Nodes<2>,
+    enrichment: &Enrichment,
+    settings: &ApproximationSettings,
+    grid_step: Option<Vector2>,
+) {
+    let is_regular = grid_step.is_some();
+    let factor = settings.enrichment.dilation(is_regular) / settings.dilation(is_regular);
+    if factor > 1.0 {
+        for (p, radii) in nodes.positions.iter().zip(&mut nodes.support_radii) {
+            if enrichment.is_reached(*p, radii.norm() * factor) {
+                *radii *= factor;
+            }
+        }
+    }
+}
+
 /// Makes nodes one that stand at the same place and see each other through a crack: their functions would be the same.
 fn join_sides(
     nodes: &mut Nodes<2>,
@@ -323,29 +360,30 @@ fn join_sides(
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
 /// parts.
 fn safeguard(
-    mut nodes: Nodes<2>,
+    mut approximation: MovingLeastSquares,
     obstacles: Obstacles,
     barriers: &Barriers,
-    settings: ApproximationSettings,
     parts: &Parts,
 ) -> Result<(MovingLeastSquares, Vec<Vec<u32>>)> {
     let all: Vec<usize> = (0..parts.len()).collect();
     let mut suspects = all.clone();
-    let tree = BoxTree::of_points(&nodes.positions);
+    let tree = BoxTree::of_points(&approximation.nodes().positions);
     for round in 0..=SUPPORT_ROUNDS {
-        let approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings);
         let found = parts.inspect_all(&approximation, &suspects);
         let poor = || found.iter().flat_map(|i| &i.poor);
         // Poor but not singular is taken after the last round.
         if let Some(worst) = poor().min_by(|a, b| a.quality.total_cmp(&b.quality)) {
             if round == SUPPORT_ROUNDS && worst.quality == 0.0 {
-                let (n_neighbors, needed) = (worst.n_neighbors, approximation.n_needed());
+                let (n_neighbors, needed) = (worst.n_neighbors, worst.needed);
                 return Err(Error::SingularMomentMatrix { point: worst.at, n_neighbors, needed });
             }
             if round < SUPPORT_ROUNDS {
-                nodes = approximation.nodes().clone();
-                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p, approximation.n_needed() + 3));
+                let mut nodes = approximation.nodes().clone();
+                let mut grown = vec![false; nodes.len()];
+                poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p, &mut grown));
                 suspects = suspects.iter().zip(&found).filter(|(_, f)| !f.poor.is_empty()).map(|(i, _)| *i).collect();
+                let (settings, enrichment) = (*approximation.settings(), approximation.enrichment().cloned());
+                approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings).enriched(enrichment);
                 continue;
             }
         }
@@ -356,8 +394,12 @@ fn safeguard(
     unreachable!("the last round returns")
 }
 
-/// Lets the `wanted` nearest visible nodes reach the point well.
-fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>, poor: &Poor, wanted: usize) {
+/// Lets the nearest visible nodes reach the point well: as many as a good fit needs.
+///
+/// - `grown`: nodes that have grown for an enriched point in this round, which they do only once, since the points in a
+///   cell at a tip are many
+fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>, poor: &Poor, grown: &mut [bool]) {
+    let wanted = if poor.is_enriched { 2 * poor.needed } else { poor.needed + 3 };
     let mut nearest: Vec<(f64, u32)> = vec![];
     let mut reach = nodes.support_radii[nearest_node(nodes, tree, poor.at)].max();
     for _ in 0..12 {
@@ -373,10 +415,13 @@ fn enlarge_around(nodes: &mut Nodes<2>, obstacles: &Obstacles, tree: &BoxTree<2>
         reach *= 1.5;
     }
     nearest.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    for &(distance, i) in nearest.iter().take(wanted) {
+    // The longer basis does not bear supports of very different sizes side by side.
+    let n = if poor.is_enriched { nearest.len() } else { wanted };
+    for &(distance, i) in nearest.iter().take(n) {
         let radii = &mut nodes.support_radii[i as usize];
         // Far beyond the present reach only if nothing nearer helps: grow step by step.
-        if distance < 3.0 * radii.min() {
+        let again = poor.is_enriched && std::mem::replace(&mut grown[i as usize], true);
+        if distance < 3.0 * radii.min() && !again {
             *radii *= SUPPORT_GROWTH;
         }
     }

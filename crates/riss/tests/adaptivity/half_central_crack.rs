@@ -21,7 +21,7 @@ use riss::analysis::{Refined, RefinementRecord, Silent, solve_refined};
 use riss::crack::EndKind;
 use riss::exact::CrackTipField;
 use riss::fracture::{
-    FaceTerm, FractureSettings, JIntegral, SolutionField, TipDomainShape, TipView, configurational_forces,
+    FaceTerm, FractureSettings, JIntegral, SolutionField, TipDomainShape, TipLoads, TipView, configurational_forces,
     tip_integrals,
 };
 use riss::material::{Elasticity, PlaneState};

@@ -93,3 +93,16 @@ fn nodes_come_from_files_beside_the_case() {
     let riss::nodes::settings::Layout::Listed(listed) = &case.settings.nodes.layout else { panic!("listed") };
     assert_eq!((listed.positions.as_slice(), case.notes.len()), ([[1.0, 1.0], [2.5, 3.0]].as_slice(), 1));
 }
+
+#[test]
+fn enrichment_is_read_and_its_radii_are_checked() {
+    let mut template = template();
+    template.rest += "[approximation.enrichment]\nkind = 'intrinsic-radial'\nramp = 'linear'\nr1 = 0.5\nr2 = 2.0\n";
+    let enrichment = good(&template).settings.approximation.enrichment;
+    assert_eq!(enrichment.kind, riss::approximation::EnrichmentKind::IntrinsicRadial);
+    assert_eq!((enrichment.r1, enrichment.r2), (Some(0.5), Some(2.0)));
+    template.rest = template.rest.replace("0.5", "2.5");
+    assert_eq!(bad(&template), "must not exceed `r2`");
+    template.rest = template.rest.replace("2.0", "0.0");
+    assert_eq!(bad(&template), "must be positive");
+}

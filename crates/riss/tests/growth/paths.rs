@@ -4,6 +4,7 @@ use crate::bodies::{BOTH, body, crack, hold, rectangle};
 use crate::steps::{Steps, grow};
 use riss::analysis::crack_growth::settings::{IncrementControl, IncrementForm};
 use riss::analysis::{GrowthSettings, Settings};
+use riss::approximation::EnrichmentKind;
 use riss::crack::EndKind::{Mouth, Tip};
 use riss::fracture::GrowthCriterion;
 use riss::geometry::predicates::distance_to_segment;
@@ -41,6 +42,17 @@ fn curved_increments_give_one_path_where_straight_ones_give_many() {
     let (coarse, fine) = (x(5.0, IncrementForm::Curved), x(1.25, IncrementForm::Curved));
     assert!((coarse - fine).abs() < 0.5, "{coarse} {fine}");
     assert!((fine - 170.7).abs() < 1.5, "{fine}");
+}
+
+/// Each step has its own region, around a crack that bends.
+#[test]
+fn enriched_region_travels_with_the_tip() {
+    let growth = GrowthSettings { increment: Some(5.0), form: IncrementForm::Straight, ..GrowthSettings::default() };
+    let mut settings = Settings::default();
+    settings.approximation.enrichment.kind = EnrichmentKind::IntrinsicFull;
+    let x = x_at(&grow(&double_cantilever(), &settings, &growth).0, 25.0);
+    // The path of the finite element program above.
+    assert!((x - 182.8).abs() < 1.5, "{x}");
 }
 
 /// A clamped plate under shear with a crack from the left side.

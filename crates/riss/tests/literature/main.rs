@@ -4,6 +4,7 @@ mod arc_crack;
 mod bodies;
 mod closed_crack;
 mod energy_release;
+mod enrichment;
 mod junctions;
 mod near_tip;
 mod pressurized_crack;

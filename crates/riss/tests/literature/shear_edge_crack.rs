@@ -25,9 +25,9 @@ use riss::model::{BoundaryLoad, BoundarySupport, Direction, Model, PrescribedVal
 use riss::nodes::settings::{Layout, Structured};
 
 /// Converged K_I and K_II [psi√in].
-const REFERENCE: [f64; 2] = [34.0425, 4.5370];
+pub const REFERENCE: [f64; 2] = [34.0425, 4.5370];
 
-fn plate() -> Model {
+pub fn plate() -> Model {
     let clamped = [Direction::X, Direction::Y].map(|direction| BoundarySupport {
         part: 0,
         direction,

@@ -2,6 +2,7 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod enrichment;
 mod invariance;
 mod shape_functions;
 mod smoothing;

@@ -84,6 +84,13 @@ fn check_approximation(file: &CaseFile, report: &mut Report) {
         let message = "too few neighbors for the basis";
         report.error("approximation.dilation", message).allow(format!("{least} to 10"));
     }
+    let enrichment = &file.approximation.enrichment;
+    if let Some(r2) = enrichment.r2
+        && report.positive("approximation.enrichment.r2", r2)
+        && enrichment.r1.is_some_and(|r1| r1 > r2)
+    {
+        report.error("approximation.enrichment.r1", "must not exceed `r2`");
+    }
     check_smoothing(&file.approximation, report);
 }
 
