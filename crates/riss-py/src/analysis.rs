@@ -6,13 +6,13 @@ use crate::step::{State, Step};
 use pyo3::prelude::*;
 use riss::analysis::{GrowthEndKind, GrowthState, Observer, Stage, StaticResult, Warning, crack_growth, linear_static};
 use riss::output::results::StepResults;
-use riss::output::{OutputOptions, RunInfo, RunStatus, RunWriter};
+use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// How often Ctrl-C is looked for.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -122,7 +122,9 @@ impl Job {
                     Some(state) => RunWriter::resume(dir, options, state.step),
                     None => RunWriter::new(dir, options),
                 };
-                Some(writer.map_err(|e| Failure::Files(dir.clone(), e))?)
+                let writer = writer.map_err(|e| Failure::Files(dir.clone(), e))?;
+                writer.describe(&source(&case)).map_err(|e| Failure::Files(dir.clone(), e))?;
+                Some(writer)
             }
         };
         let clock = Clock { start: Instant::now(), current: None, stages: vec![], n_taken: 0 };
@@ -135,6 +137,19 @@ impl Job {
             (Some(e), _) => Err(Failure::Files(out.unwrap_or_default(), e)),
             (None, outcome) => outcome.map_err(Failure::Analysis),
         }
+    }
+}
+
+/// What is run, for the report.
+fn source(case: &riss::case::Case) -> RunSource {
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    RunSource {
+        case_file: case.path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()),
+        case_text: case.text.clone(),
+        overrides: case.overrides.clone(),
+        platform: format!("{} on {}, from Python", std::env::consts::OS, std::env::consts::ARCH),
+        threads: rayon::current_num_threads(),
+        started_unix_s: since_1970.as_secs(),
     }
 }
 

@@ -95,7 +95,7 @@ def test_tables_have_the_columns_of_the_file(tmp_path, run):
     header = (tmp_path / "history.csv").read_text().splitlines()[0].split(",")
     table = run.to_pandas()
     assert list(table.columns) == header and table["K_I"][0] == run.tip()["K_I"]
-    assert (tmp_path / "results.json").exists()
+    assert (tmp_path / "results.json").exists() and (tmp_path / "report.html").exists()
 
 
 def test_meshio_gets_all_fields(run):

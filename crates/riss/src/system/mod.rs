@@ -8,6 +8,7 @@ pub mod galerkin;
 pub mod linear_solver;
 pub mod ordering;
 pub mod rigid_motion;
+mod safeguard;
 pub mod settings;
 pub mod solve;
 
