@@ -12,7 +12,7 @@ const riss = process.env.RISS ?? join(root, "target/release/riss");
 const folder = mkdtempSync(join(tmpdir(), "riss-screenshot-"));
 const STEP = 12;
 
-const done = spawnSync(riss, ["run", join(root, "cases/two-holes-two-cracks-45/case.toml"), "--quiet", "--out", folder], { stdio: "inherit" });
+const done = spawnSync(riss, ["run", join(root, "cases/two-holes-two-cracks-45/case.toml"), "--quiet", "--out", folder], { stdio: ["ignore", "ignore", "inherit"] });
 if (done.status !== 0) process.exit(done.status ?? 1);
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
 const page = await browser.newPage({ viewport: { width: 1120, height: 860 } });
