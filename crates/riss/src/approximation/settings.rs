@@ -63,7 +63,7 @@ impl ApproximationSettings {
 pub struct SmoothingSettings {
     /// Around cracks; visibility if not given.
     pub cracks: Option<CrackSmoothing>,
-    /// Around holes and re-entrant corners; diffraction if not given.
+    /// Around holes and re-entrant corners; visibility if not given. Wide supports at round holes want diffraction.
     pub holes: Option<HoleSmoothing>,
 }
 
@@ -77,14 +77,9 @@ impl SmoothingSettings {
         self.cracks.unwrap_or(CrackSmoothing::Visibility)
     }
 
-    /// What is used at holes and re-entrant corners: as given, or diffraction, with the exponent of the cracks.
+    /// What is used at holes and re-entrant corners: as given, or visibility, which is best at sharp corners.
     pub fn holes(&self) -> HoleSmoothing {
-        let lambda = match self.cracks() {
-            CrackSmoothing::Diffraction { lambda } => lambda,
-            CrackSmoothing::Transparency { .. } => 1.0,
-            CrackSmoothing::Visibility | CrackSmoothing::SeeThrough => two(),
-        };
-        self.holes.unwrap_or(HoleSmoothing::Diffraction { lambda })
+        self.holes.unwrap_or(HoleSmoothing::Visibility)
     }
 }
 

@@ -7,7 +7,7 @@
 //!      `-------+  ->
 //! ```
 //!
-//! Linear basis, default dilation and smoothing; the stress concentration, exactly 3, is read at (0, 1):
+//! Linear basis, default dilation, visibility criterion; the stress concentration, exactly 3, is read at (0, 1):
 //!
 //! | polar nodes | energy error | σ_xx | graded nodes | energy error | σ_xx |
 //! | --- | --- | --- | --- | --- | --- |
