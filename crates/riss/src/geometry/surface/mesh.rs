@@ -108,8 +108,8 @@ impl TriangleMesh {
     }
 }
 
-/// Points without repetitions, and for each given one which of them it is.
-fn weld(points: &[Vector3], tolerance: f64) -> (Vec<Vector3>, Vec<u32>) {
+/// Points without repetitions, and for each given one which of them it is; those within `tolerance` are one.
+pub fn weld(points: &[Vector3], tolerance: f64) -> (Vec<Vector3>, Vec<u32>) {
     let cell = tolerance.max(f64::MIN_POSITIVE) * 4.0;
     let key = |p: Vector3| p.map(|x| (x / cell).floor() as i64);
     let mut bins: FxHashMap<[i64; 3], Vec<u32>> = FxHashMap::default();
