@@ -11,6 +11,7 @@ pub mod fill;
 pub mod generation;
 mod ligaments;
 pub mod settings;
+pub mod solid;
 mod source_tree;
 pub mod spacing;
 pub mod support;
