@@ -1,0 +1,379 @@
+//! Constrained moving least squares: Taylor polynomials through the value at their center [C3D, section 2.1].
+//!
+//! All derivatives at the center are coefficients of the fit, so nothing is differentiated, and the shape functions
+//! take the value one at their own node and zero at the others. Near crack fronts the basis also holds the four
+//! functions of [EFG, Eq. 50] with their exact derivatives. Between nodes the constraint is dropped.
+
+use super::ShapeFunctions;
+use super::front_functions::{FrontFrame, FrontLine};
+use super::least_squares::{Column, LeastSquares};
+use super::settings::{CollocationWeight, ConstrainedMlsSettings};
+use super::taylor_basis::TaylorBasis;
+use crate::error::{Error, Result};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::obstacles::Opaque;
+use crate::geometry::tree::BoxTree;
+use crate::math::{Matrix, Vector};
+use crate::nodes::cloud::Cloud;
+use std::sync::Arc;
+
+/// Rounds in which the support of a poor fit grows before terms of its basis are given up.
+const ROUNDS: usize = 4;
+/// Growth of the number of neighbors in each round.
+const GROWTH: f64 = 1.3;
+/// A function of the basis counts as dependent on those before it if it keeps less than this share of its length.
+///
+/// Irregular nodes in general position keep 0.02 and more for cubic terms.
+const DEPENDENT: f64 = 1e-3;
+/// The same for the functions of a front, which far from it resemble polynomials.
+const DEPENDENT_FRONT: f64 = 1e-6;
+/// Nearer to a front than this share of the support, its functions have no derivatives that could be used.
+const CORE: f64 = 1e-6;
+
+/// Constrained moving least squares over a cloud.
+#[derive(Clone)]
+pub struct ConstrainedMls<const D: usize> {
+    cloud: Cloud<D>,
+    tree: BoxTree<D>,
+    obstacles: Arc<dyn Opaque<D> + Send>,
+    fronts: Vec<EnrichedFront<D>>,
+    basis: TaylorBasis<D>,
+    columns: Vec<Column<D>>,
+    settings: ConstrainedMlsSettings,
+    /// Diagonal of the box around all nodes.
+    extent: f64,
+}
+
+/// A front with the distance from it up to which the basis is enriched.
+#[derive(Clone, Debug)]
+pub struct EnrichedFront<const D: usize> {
+    /// The front.
+    pub line: FrontLine<D>,
+    /// Nodes and points nearer to it than this have the functions of the front in their basis [length].
+    pub reach: f64,
+}
+
+/// Working memory of one thread.
+#[derive(Clone, Debug, Default)]
+pub struct FitBuffer<const D: usize> {
+    candidates: Vec<(f64, u32)>,
+    fit: LeastSquares<D>,
+}
+
+/// Where a fit is made.
+#[derive(Clone, Copy)]
+enum Center<const D: usize> {
+    /// At a node, whose value it takes.
+    Node(u32),
+    /// Anywhere.
+    Point(Vector<D>),
+}
+
+impl<const D: usize> ConstrainedMls<D> {
+    /// Prepares the search for neighbors.
+    pub fn new(
+        cloud: Cloud<D>,
+        obstacles: Arc<dyn Opaque<D> + Send>,
+        fronts: Vec<EnrichedFront<D>>,
+        settings: ConstrainedMlsSettings,
+    ) -> Self {
+        let tree = BoxTree::of_points(&cloud.positions);
+        let basis = TaylorBasis::new(settings.order);
+        let columns = (0..basis.len())
+            .map(|k| {
+                let (gradient, second_derivatives) = basis.derivatives_at_origin(k);
+                Column { value: 0.0, gradient, second_derivatives }
+            })
+            .collect();
+        let extent = Aabb::of_points(cloud.positions.iter().copied()).size().norm();
+        Self { cloud, tree, obstacles, fronts, basis, columns, settings, extent }
+    }
+
+    /// The nodes.
+    pub fn cloud(&self) -> &Cloud<D> {
+        &self.cloud
+    }
+
+    /// Number of nodes of a support, its center included.
+    pub fn support_size(&self) -> usize {
+        self.settings.neighbors.unwrap_or_else(|| default_neighbors::<D>(self.basis.len()))
+    }
+
+    /// Shape functions and derivatives at a node, seen from `sight`; the node comes first. Returns the support radius.
+    ///
+    /// # Errors
+    /// [`Error::PoorStencil`] if its neighbors do not determine second derivatives.
+    pub fn at_node(
+        &self,
+        node: u32,
+        sight: Vector<D>,
+        buffer: &mut FitBuffer<D>,
+        shape: &mut ShapeFunctions<D>,
+    ) -> Result<f64> {
+        self.evaluate(Center::Node(node), self.cloud.positions[node as usize], sight, buffer, shape)
+    }
+
+    /// Shape functions and derivatives anywhere, seen from `sight`. Returns the support radius.
+    ///
+    /// # Errors
+    /// [`Error::PoorStencil`] if the neighbors do not determine second derivatives.
+    pub fn at_point(
+        &self,
+        at: Vector<D>,
+        sight: Vector<D>,
+        buffer: &mut FitBuffer<D>,
+        shape: &mut ShapeFunctions<D>,
+    ) -> Result<f64> {
+        self.evaluate(Center::Point(at), at, sight, buffer, shape)
+    }
+
+    fn evaluate(
+        &self,
+        center: Center<D>,
+        at: Vector<D>,
+        sight: Vector<D>,
+        buffer: &mut FitBuffer<D>,
+        shape: &mut ShapeFunctions<D>,
+    ) -> Result<f64> {
+        let mut wanted = self.support_size();
+        let FitBuffer { candidates, fit } = buffer;
+        for round in 0..=ROUNDS {
+            let radius = self.gather(center, at, sight, wanted, candidates);
+            let rank = self.fit(center, at, sight, radius, candidates, fit);
+            // In the last round higher terms may go, such as the third power across a body of three layers.
+            let complete = if round < ROUNDS { rank.is_complete } else { rank.n_leading == self.n_needed() };
+            if complete {
+                self.write(center, candidates, fit, shape);
+                return Ok(radius);
+            }
+            wanted = (wanted as f64 * GROWTH).ceil() as usize;
+        }
+        Err(self.poor(center, at, candidates.len()))
+    }
+
+    /// Number of terms up to second order.
+    fn n_needed(&self) -> usize {
+        self.basis.len().min(super::taylor_basis::n_derivatives::<D>())
+    }
+
+    #[cold]
+    fn poor(&self, center: Center<D>, at: Vector<D>, n_neighbors: usize) -> Error {
+        let node = match center {
+            Center::Node(i) => Some(i as usize),
+            Center::Point(_) => None,
+        };
+        Error::PoorStencil { node, position: at.iter().copied().collect(), n_neighbors, needed: self.basis.len() }
+    }
+
+    /// The nearest visible nodes, nearest first, without the center; returns the support radius.
+    ///
+    /// The support is the largest one that holds no more than `wanted` nodes [C3D, after Eq. 12].
+    fn gather(
+        &self,
+        center: Center<D>,
+        at: Vector<D>,
+        sight: Vector<D>,
+        wanted: usize,
+        found: &mut Vec<(f64, u32)>,
+    ) -> f64 {
+        let (own, spacing) = match center {
+            Center::Node(i) => (Some(i), self.cloud.spacings[i as usize]),
+            Center::Point(p) => (None, self.spacing_near(p)),
+        };
+        let needed = wanted - usize::from(own.is_some());
+        let mut radius = 1.15 * spacing * ball_radius::<D>(wanted);
+        loop {
+            found.clear();
+            let r2 = radius * radius;
+            self.tree.visit(&Aabb::around(at, Vector::repeat(radius)), |j| {
+                let d2 = (self.cloud.positions[j as usize] - at).norm_squared();
+                if d2 <= r2 && own != Some(j) {
+                    found.push((d2, j));
+                }
+            });
+            let is_all = radius > self.extent;
+            if found.len() > needed || is_all {
+                found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                let mut n_visible = 0;
+                found.retain(|&(_, j)| {
+                    let keep = n_visible <= needed && self.obstacles.visible(sight, self.cloud.sights[j as usize]);
+                    n_visible += usize::from(keep);
+                    keep
+                });
+                if n_visible > needed || is_all {
+                    break;
+                }
+            }
+            radius *= 1.25;
+        }
+        if found.len() <= needed {
+            // The whole body: the farthest node keeps a small weight.
+            return 1.1 * found.last().map_or(radius, |last| last.0.sqrt());
+        }
+        let limit = found[needed].0;
+        // Nodes as far as the first one that is left out have no weight.
+        let kept = found.partition_point(|f| f.0 < limit);
+        found.truncate(kept);
+        limit.sqrt()
+    }
+
+    /// Spacing of a node near a point.
+    fn spacing_near(&self, at: Vector<D>) -> f64 {
+        let mut radius = self.extent / (self.cloud.len() as f64).powf(1.0 / D as f64);
+        loop {
+            let mut nearest = (f64::INFINITY, radius);
+            self.tree.visit(&Aabb::around(at, Vector::repeat(radius)), |j| {
+                let d2 = (self.cloud.positions[j as usize] - at).norm_squared();
+                if d2 < nearest.0 {
+                    nearest = (d2, self.cloud.spacings[j as usize]);
+                }
+            });
+            if nearest.0.is_finite() || radius > self.extent {
+                return nearest.1;
+            }
+            radius *= 2.0;
+        }
+    }
+
+    /// The frame of the front whose functions are in the basis at a point.
+    fn frame(&self, at: Vector<D>, radius: f64) -> Option<FrontFrame<D>> {
+        let near = self.fronts.iter().filter_map(|front| {
+            let reach = Aabb { lower: at.add_scalar(-front.reach), upper: at.add_scalar(front.reach) };
+            if !reach.intersects(front.line.bounds()) {
+                return None;
+            }
+            let frame = front.line.nearest(at)?;
+            let [x, y] = frame.plane(at);
+            let along = (at - frame.position).norm();
+            (along < front.reach && x.hypot(y) > CORE * radius).then_some((along, frame))
+        });
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frame)| frame)
+    }
+
+    /// Fits the basis to unit values of the neighbors.
+    fn fit(
+        &self,
+        center: Center<D>,
+        at: Vector<D>,
+        sight: Vector<D>,
+        radius: f64,
+        neighbors: &[(f64, u32)],
+        fit: &mut LeastSquares<D>,
+    ) -> Rank {
+        let weight = self.settings.weight;
+        fit.start(radius, neighbors.iter().map(|n| weight.root(n.0.sqrt() / radius)));
+        let has_constant = matches!(center, Center::Point(_));
+        if has_constant {
+            fit.add_constant();
+        }
+        fit.add_columns(&self.columns, neighbors, |j, values| {
+            self.basis.values_into(&((self.cloud.positions[j as usize] - at) / radius), values);
+        });
+        let n_leading = self.n_needed();
+        let kept_constant = !has_constant || fit.orthogonalize(1, DEPENDENT) == 1;
+        let kept = fit.orthogonalize(n_leading, DEPENDENT);
+        let rest = self.basis.len() - n_leading;
+        let is_complete = fit.orthogonalize(rest, DEPENDENT) == rest && kept == n_leading && kept_constant;
+        if let Some(frame) = self.frame(at, radius).filter(|_| is_complete) {
+            self.enrich(&frame, at, sight, radius, neighbors, fit);
+        }
+        Rank { is_complete, n_leading: if kept_constant { kept } else { 0 } }
+    }
+
+    /// Adds the functions of a front.
+    fn enrich(
+        &self,
+        frame: &FrontFrame<D>,
+        at: Vector<D>,
+        sight: Vector<D>,
+        radius: f64,
+        neighbors: &[(f64, u32)],
+        fit: &mut LeastSquares<D>,
+    ) {
+        let jets = frame.jets(at, sight);
+        let scale = 1.0 / radius.sqrt();
+        let columns = jets.map(|jet| Column {
+            value: 0.0,
+            gradient: jet.gradient * (scale * radius),
+            second_derivatives: jet.second_derivatives * (scale * radius * radius),
+        });
+        fit.add_columns(&columns, neighbors, |j, values| {
+            let f = frame.values(self.cloud.positions[j as usize], self.cloud.sights[j as usize]);
+            for (k, value) in values.iter_mut().enumerate() {
+                *value = (f[k] - jets[k].value) * scale;
+            }
+        });
+        fit.orthogonalize_twice(columns.len(), DEPENDENT_FRONT);
+    }
+
+    /// Solves for the derivatives and writes them.
+    fn write(
+        &self,
+        center: Center<D>,
+        neighbors: &[(f64, u32)],
+        fit: &mut LeastSquares<D>,
+        shape: &mut ShapeFunctions<D>,
+    ) {
+        shape.neighbors.clear();
+        shape.values.clear();
+        shape.gradients.clear();
+        shape.second_derivatives.clear();
+        let is_node = match center {
+            Center::Node(i) => {
+                shape.neighbors.push(i);
+                shape.values.push(1.0);
+                shape.gradients.push(Vector::zeros());
+                shape.second_derivatives.push(Matrix::zeros());
+                true
+            }
+            Center::Point(_) => false,
+        };
+        fit.solve();
+        for (i, n) in neighbors.iter().enumerate() {
+            let row = fit.row(i);
+            shape.neighbors.push(n.1);
+            shape.values.push(if is_node { 0.0 } else { row.value });
+            shape.gradients.push(row.gradient);
+            shape.second_derivatives.push(row.second_derivatives);
+            if is_node {
+                // The center takes part through the differences u_I - u_y [C3D, Eq. 10].
+                shape.gradients[0] -= row.gradient;
+                shape.second_derivatives[0] -= row.second_derivatives;
+            }
+        }
+    }
+}
+
+/// How much of a basis the neighbors determine.
+struct Rank {
+    is_complete: bool,
+    /// Terms up to second order.
+    n_leading: usize,
+}
+
+/// Radius of a ball that holds `n` unit cells.
+pub fn ball_radius<const D: usize>(n: usize) -> f64 {
+    use std::f64::consts::PI;
+    let unit_ball = if D == 2 { PI } else { 4.0 / 3.0 * PI };
+    (n as f64 / unit_ball).powf(1.0 / D as f64)
+}
+
+/// Nodes of a support for `l` terms: 7.89 L in space [C3D, after Eq. 12]; in the plane 4.44 L reach as far.
+fn default_neighbors<const D: usize>(l: usize) -> usize {
+    let ratio = if D == 2 { 4.44 } else { 7.89 };
+    (ratio * l as f64).floor() as usize
+}
+
+impl CollocationWeight {
+    /// Square root of the weight at a relative distance from 0 to 1.
+    #[inline]
+    pub fn root(self, s: f64) -> f64 {
+        match self {
+            Self::NonSmooth => 1.0 - s.sqrt(),
+            Self::Smooth(function) => function.value_and_slope(s * s).0.max(0.0).sqrt(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
