@@ -16,6 +16,15 @@ pub struct SurfacePoint<const D: usize> {
     pub position: Vector<D>,
     /// Unit normal out of the material; zero inside the body.
     pub normal: Vector<D>,
+    /// A place nearby inside the material: it tells the two faces of a crack apart.
+    pub sight: Vector<D>,
+}
+
+impl<const D: usize> SurfacePoint<D> {
+    /// A point inside the body.
+    pub fn inside(position: Vector<D>) -> Self {
+        Self { position, normal: Vector::zeros(), sight: position }
+    }
 }
 
 /// A vector, or a function of position and normal.

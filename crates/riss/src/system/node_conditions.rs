@@ -61,7 +61,7 @@ impl<const D: usize> NodeConditions<D> {
         }
         let is_front = matches!(cloud.places[node], Place::Front { .. });
         if facets.is_empty() || (is_front && settings.front_nodes == FrontNodes::Equilibrium) {
-            let load = solid.body_force.value(&SurfacePoint { position, normal: Vector::zeros() });
+            let load = solid.body_force.value(&SurfacePoint::inside(position));
             this.terms.push(StrongTerm { equation: Strong::Equilibrium, load, sight });
             return this;
         }
@@ -73,7 +73,7 @@ impl<const D: usize> NodeConditions<D> {
     /// Fixes the directions of a facet that are not fixed yet.
     fn prescribe(&mut self, solid: &Solid<D>, position: Vector<D>, facet: &Facet<D>) {
         let Some(conditions) = part(solid, facet) else { return };
-        let at = SurfacePoint { position, normal: facet.normal };
+        let at = SurfacePoint { position, normal: facet.normal, sight: facet.sight };
         for prescribed in &conditions.displacements {
             let direction = match prescribed.direction {
                 SolidDirection::Fixed(d) => d,
@@ -111,7 +111,7 @@ impl<const D: usize> NodeConditions<D> {
         };
         for facet in acting() {
             let share = facet.angle / total;
-            let load = traction(solid, facet).value(&SurfacePoint { position, normal: facet.normal }) * share;
+            let load = traction(solid, facet).value(&SurfacePoint { position, normal: facet.normal, sight: facet.sight }) * share;
             let own = facet.normal * share;
             if one_sided {
                 let equation = Strong::Traction { normal: own };
