@@ -65,8 +65,28 @@ pub struct FitBuffer<const D: usize> {
 enum Center<const D: usize> {
     /// At a node, whose value it takes.
     Node(u32),
+    /// At a node, from the others alone.
+    Without(u32),
     /// Anywhere.
     Point(Vector<D>),
+}
+
+impl<const D: usize> Center<D> {
+    /// The node that is no neighbor.
+    fn own(self) -> Option<u32> {
+        match self {
+            Self::Node(i) | Self::Without(i) => Some(i),
+            Self::Point(_) => None,
+        }
+    }
+
+    /// Whether the fit takes the value of its node.
+    fn is_constrained(self) -> bool {
+        match self {
+            Self::Node(_) => true,
+            Self::Without(_) | Self::Point(_) => false,
+        }
+    }
 }
 
 impl<const D: usize> ConstrainedMls<D> {
@@ -111,6 +131,22 @@ impl<const D: usize> ConstrainedMls<D> {
         shape: &mut ShapeFunctions<D>,
     ) -> Result<f64> {
         self.evaluate(Center::Node(node), self.cloud.positions[node as usize], sight, buffer, shape)
+    }
+
+    /// Shape functions at a node of a front by the other nodes: what the field takes there if it is regular.
+    ///
+    /// Only the values mean anything where the basis is enriched. Returns the support radius.
+    ///
+    /// # Errors
+    /// [`Error::PoorStencil`] if the neighbors do not determine second derivatives.
+    pub fn at_front(
+        &self,
+        node: u32,
+        sight: Vector<D>,
+        buffer: &mut FitBuffer<D>,
+        shape: &mut ShapeFunctions<D>,
+    ) -> Result<f64> {
+        self.evaluate(Center::Without(node), self.cloud.positions[node as usize], sight, buffer, shape)
     }
 
     /// Shape functions and derivatives anywhere, seen from `sight`. Returns the support radius.
@@ -158,10 +194,7 @@ impl<const D: usize> ConstrainedMls<D> {
 
     #[cold]
     fn poor(&self, center: Center<D>, at: Vector<D>, n_neighbors: usize) -> Error {
-        let node = match center {
-            Center::Node(i) => Some(i as usize),
-            Center::Point(_) => None,
-        };
+        let node = center.own().map(|i| i as usize);
         Error::PoorStencil { node, position: at.iter().copied().collect(), n_neighbors, needed: self.basis.len() }
     }
 
@@ -176,10 +209,8 @@ impl<const D: usize> ConstrainedMls<D> {
         wanted: usize,
         found: &mut Vec<(f64, u32)>,
     ) -> f64 {
-        let (own, spacing) = match center {
-            Center::Node(i) => (Some(i), self.cloud.spacings[i as usize]),
-            Center::Point(p) => (None, self.spacing_near(p)),
-        };
+        let own = center.own();
+        let spacing = own.map_or_else(|| self.spacing_near(at), |i| self.cloud.spacings[i as usize]);
         let needed = wanted - usize::from(own.is_some());
         let mut radius = 1.15 * spacing * ball_radius::<D>(wanted);
         loop {
@@ -236,7 +267,11 @@ impl<const D: usize> ConstrainedMls<D> {
     }
 
     /// The frame of the front whose functions are in the basis at a point.
-    fn frame(&self, at: Vector<D>, radius: f64) -> Option<FrontFrame<D>> {
+    fn frame(&self, center: Center<D>, at: Vector<D>, radius: f64) -> Option<FrontFrame<D>> {
+        let core = match center {
+            Center::Node(_) | Center::Point(_) => CORE * radius,
+            Center::Without(_) => -1.0,
+        };
         let near = self.fronts.iter().filter_map(|front| {
             let reach = Aabb { lower: at.add_scalar(-front.reach), upper: at.add_scalar(front.reach) };
             if !reach.intersects(front.line.bounds()) {
@@ -245,7 +280,7 @@ impl<const D: usize> ConstrainedMls<D> {
             let frame = front.line.nearest(at)?;
             let [x, y] = frame.plane(at);
             let along = (at - frame.position).norm();
-            (along < front.reach && x.hypot(y) > CORE * radius).then_some((along, frame))
+            (along < front.reach && x.hypot(y) > core).then_some((along, frame))
         });
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frame)| frame)
     }
@@ -262,7 +297,7 @@ impl<const D: usize> ConstrainedMls<D> {
     ) -> Rank {
         let weight = self.settings.weight;
         fit.start(radius, neighbors.iter().map(|n| weight.root(n.0.sqrt() / radius)));
-        let has_constant = matches!(center, Center::Point(_));
+        let has_constant = !center.is_constrained();
         if has_constant {
             fit.add_constant();
         }
@@ -274,7 +309,7 @@ impl<const D: usize> ConstrainedMls<D> {
         let kept = fit.orthogonalize(n_leading, DEPENDENT);
         let rest = self.basis.len() - n_leading;
         let is_complete = fit.orthogonalize(rest, DEPENDENT) == rest && kept == n_leading && kept_constant;
-        if let Some(frame) = self.frame(at, radius).filter(|_| is_complete) {
+        if let Some(frame) = self.frame(center, at, radius).filter(|_| is_complete) {
             self.enrich(&frame, at, sight, radius, neighbors, fit);
         }
         Rank { is_complete, n_leading: if kept_constant { kept } else { 0 } }
@@ -292,10 +327,12 @@ impl<const D: usize> ConstrainedMls<D> {
     ) {
         let jets = frame.jets(at, sight);
         let scale = 1.0 / radius.sqrt();
+        // On the front itself only the value counts.
+        let slope = if frame.polar(at, sight)[0] > CORE * radius { scale * radius } else { 0.0 };
         let columns = jets.map(|jet| Column {
             value: 0.0,
-            gradient: jet.gradient * (scale * radius),
-            second_derivatives: jet.second_derivatives * (scale * radius * radius),
+            gradient: if slope > 0.0 { jet.gradient * slope } else { Vector::zeros() },
+            second_derivatives: if slope > 0.0 { jet.second_derivatives * (slope * radius) } else { Matrix::zeros() },
         });
         fit.add_columns(&columns, neighbors, |j, values| {
             let f = frame.values(self.cloud.positions[j as usize], self.cloud.sights[j as usize]);
@@ -318,16 +355,13 @@ impl<const D: usize> ConstrainedMls<D> {
         shape.values.clear();
         shape.gradients.clear();
         shape.second_derivatives.clear();
-        let is_node = match center {
-            Center::Node(i) => {
-                shape.neighbors.push(i);
-                shape.values.push(1.0);
-                shape.gradients.push(Vector::zeros());
-                shape.second_derivatives.push(Matrix::zeros());
-                true
-            }
-            Center::Point(_) => false,
-        };
+        let is_node = center.is_constrained();
+        if let Some(i) = center.own().filter(|_| is_node) {
+            shape.neighbors.push(i);
+            shape.values.push(1.0);
+            shape.gradients.push(Vector::zeros());
+            shape.second_derivatives.push(Matrix::zeros());
+        }
         fit.solve();
         for (i, n) in neighbors.iter().enumerate() {
             let row = fit.row(i);

@@ -129,11 +129,20 @@ impl<const D: usize> Collocation<D> {
         let mut load = conditions.displacement;
         let young = self.solid.material.young;
         for term in &conditions.terms {
-            let radius = self.approximation.at_node(node, term.sight, buffer, shape)?;
+            let radius = match term.equation {
+                Strong::Fit => self.approximation.at_front(node, term.sight, buffer, shape)?,
+                Strong::Equilibrium | Strong::Traction { .. } => {
+                    self.approximation.at_node(node, term.sight, buffer, shape)?
+                }
+            };
             let h = radius / ball_radius::<D>(shape.neighbors.len());
             let scale = match term.equation {
                 Strong::Equilibrium => h * h / young,
                 Strong::Traction { .. } => h / young,
+                Strong::Fit => {
+                    entries.push((node, to_block(&free)));
+                    1.0
+                }
             };
             load += free * term.load * scale;
             self.add_term(term, &(free * scale), shape, entries);
@@ -160,6 +169,7 @@ impl<const D: usize> Collocation<D> {
                     let h = &shape.second_derivatives[k];
                     h * -(lambda + mu) - Matrix::from_diagonal_element(mu * h.trace())
                 }
+                Strong::Fit => Matrix::from_diagonal_element(-shape.values[k]),
                 Strong::Traction { normal } => {
                     let g = &shape.gradients[k];
                     normal * g.transpose() * lambda

@@ -29,6 +29,8 @@ pub enum FrontNodes {
     Averaged,
     /// Equilibrium as inside the body.
     Equilibrium,
+    /// The value that the nodes around give there.
+    Fitted,
 }
 
 impl FrontNodes {
@@ -36,7 +38,7 @@ impl FrontNodes {
     pub fn are_omitted(self) -> bool {
         match self {
             Self::Omitted => true,
-            Self::Averaged | Self::Equilibrium => false,
+            Self::Averaged | Self::Equilibrium | Self::Fitted => false,
         }
     }
 }

@@ -37,6 +37,8 @@ pub struct StrongTerm<const D: usize> {
 pub enum Strong<const D: usize> {
     /// `-div σ = b` [C3D, Eq. 24].
     Equilibrium,
+    /// The value is that of a fit without the node.
+    Fit,
     /// `σ n = t` [C3D, Eqs. 25, 27, 28]; the normal may be a mean of normals.
     Traction {
         /// Outward normal.
@@ -63,6 +65,10 @@ impl<const D: usize> NodeConditions<D> {
         if facets.is_empty() || (is_front && settings.front_nodes == FrontNodes::Equilibrium) {
             let load = solid.body_force.value(&SurfacePoint::inside(position));
             this.terms.push(StrongTerm { equation: Strong::Equilibrium, load, sight });
+            return this;
+        }
+        if is_front && settings.front_nodes == FrontNodes::Fitted {
+            this.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
             return this;
         }
         let one_sided = is_front || (settings.concave_corners == ConcaveCorners::Averaged && is_concave(position, facets));

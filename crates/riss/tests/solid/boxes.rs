@@ -13,6 +13,7 @@ pub struct Box<const D: usize> {
     /// How far nodes are moved at most, over the spacing.
     pub jitter: f64,
     pub crack: Crack,
+    pub seed: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +62,7 @@ impl<const D: usize> Box<D> {
     /// The box from -1 to 1 with `n` steps along each axis.
     pub fn cube(n: usize) -> Self {
         let one = Vector::repeat(1.0);
-        Self { lower: -one, upper: one, steps: [n; D], jitter: 0.2, crack: Crack::None }
+        Self { lower: -one, upper: one, steps: [n; D], jitter: 0.2, crack: Crack::None, seed: 7 }
     }
 
     pub fn spacing(&self) -> Vector<D> {
@@ -69,7 +70,7 @@ impl<const D: usize> Box<D> {
     }
 
     pub fn cloud(&self) -> Cloud<D> {
-        let (h, mut random, mut cloud) = (self.spacing(), Random::new(7), Cloud::default());
+        let (h, mut random, mut cloud) = (self.spacing(), Random::new(self.seed), Cloud::default());
         let n: usize = self.steps.iter().map(|s| s + 1).product();
         for k in 0..n {
             let mut rest = k;

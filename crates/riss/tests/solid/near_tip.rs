@@ -24,7 +24,7 @@ fn experiment_settings() -> CollocationSettings {
     settings.approximation.order = env("ORDER", 3.0) as usize;
     let k = env("NEIGH", 0.0) as usize;
     settings.approximation.neighbors = (k > 0).then_some(k);
-    settings.front_nodes = [FrontNodes::Omitted, FrontNodes::Averaged, FrontNodes::Equilibrium][env("FRONT", 0.0) as usize];
+    settings.front_nodes = [FrontNodes::Omitted, FrontNodes::Averaged, FrontNodes::Equilibrium, FrontNodes::Fitted][env("FRONT", 0.0) as usize];
     settings
 }
 
@@ -47,7 +47,7 @@ fn square() {
     };
     let frame = FrontFrame { position: Vector::zeros(), ahead: axis::<2>(0), normal: axis::<2>(1), curvature: 0.0 };
     let fronts = vec![EnrichedFront { line: FrontLine::new(vec![frame], FrontEnds::Open), reach }];
-    let body = Box { crack: Crack::HalfPlane, jitter: env("JITTER", 0.2), ..Box::<2>::cube(n) };
+    let body = Box { crack: Crack::HalfPlane, seed: env("SEED", 7.0) as u64, jitter: env("JITTER", 0.2), ..Box::<2>::cube(n) };
     let collocation = Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), fronts, experiment_settings());
     let start = Instant::now();
     let system = collocation.assemble().unwrap();
@@ -57,6 +57,26 @@ fn square() {
     let error = collocation.cloud().positions.iter().zip(&found.displacements).zip(&collocation.cloud().sights).map(|((p, u), s)| (u - exact(*p, *s)).norm()).fold(0.0, f64::max);
     let scale = exact(Vector2::new(-1.0, 1.0), Vector2::new(-1.0, 1.0)).norm();
     eprintln!("n {n} reach {reach} error {:.2e} {:?} {assembled:?} {solved:?}", error / scale, found.effort);
+    if env("DEBUG", 0.0) > 0.0 {
+        let cloud = collocation.cloud();
+        let u: Vec<f64> = (0..cloud.len()).flat_map(|i| { let v = exact(cloud.positions[i], cloud.sights[i]); [v.x, v.y] }).collect();
+        let mut r = vec![0.0; u.len()];
+        system.residual_into(&u, &mut r);
+        let mut order: Vec<usize> = (0..cloud.len()).collect();
+        let size = |i: usize| r[2 * i].hypot(r[2 * i + 1]);
+        order.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
+        for &i in order.iter().take(12) {
+            let mut shape = riss::approximation::ShapeFunctions::default();
+            let radius = collocation.approximation.at_node(i as u32, cloud.sights[i], &mut Default::default(), &mut shape).unwrap();
+            let big = shape.second_derivatives.iter().map(|s| s.norm()).fold(0.0, f64::max);
+            eprintln!("   {} {:.3e} at {:?} r {:.3} radius {radius} n {} big {big:.2e} {:?}", i, size(i) / scale, cloud.positions[i], cloud.positions[i].norm(), shape.neighbors.len(), matches!(cloud.places[i], riss::nodes::cloud::Place::Inside));
+        }
+        let mut near: Vec<usize> = (0..cloud.len()).collect();
+        near.sort_by(|a, b| cloud.positions[*a].norm().total_cmp(&cloud.positions[*b].norm()));
+        for &i in near.iter().take(12) {
+            eprintln!("   near {:?} error {:.2e} residual {:.2e}", cloud.positions[i], (found.displacements[i] - exact(cloud.positions[i], cloud.sights[i])).norm() / scale, size(i) / scale);
+        }
+    }
     let discs = front_integrals(&collocation, &found.displacements, &frame, 0, &[0.2, 0.3, 0.4, 0.6, 0.8]).unwrap();
     for d in discs {
         eprintln!("  R {} K1 {:+.3}% K2 {:+.3}% J {:+.3}%", d.radius, 100.0 * (d.factors[0] - 1.0), 100.0 * (d.factors[1] / 0.5 - 1.0), 100.0 * (d.j / 1.25 * material().effective_young() - 1.0));
@@ -80,7 +100,7 @@ fn cuboid() {
     let frame = |y: f64| FrontFrame { position: Vector::<3>::new(0.0, y, 0.0), ahead: Vector::<3>::x(), normal: z, curvature: 0.0 };
     let line = FrontLine::new(vec![frame(0.0), frame(b)], FrontEnds::Open);
     let ny = ((b / (2.0 * a / n as f64)).round() as usize).max(3);
-    let body = Box { lower: Vector::<3>::new(-a, 0.0, -a), upper: Vector::<3>::new(a, b, a), steps: [n, ny, n], jitter: env("JITTER", 0.2), crack: Crack::HalfPlane };
+    let body = Box { lower: Vector::<3>::new(-a, 0.0, -a), upper: Vector::<3>::new(a, b, a), steps: [n, ny, n], seed: env("SEED", 7.0) as u64, jitter: env("JITTER", 0.2), crack: Crack::HalfPlane };
     let start = Instant::now();
     let collocation = Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![EnrichedFront { line, reach }], experiment_settings());
     let system = collocation.assemble().unwrap();
