@@ -22,15 +22,16 @@ pub struct CollocationSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrontNodes {
-    /// There are none: fronts have no nodes. The best one, with the basis enriched there.
+    /// The displacement is that which the other nodes around give there. Rules out fields that are more singular than
+    /// that of a crack.
     #[default]
+    Fitted,
+    /// There are none: fronts have no nodes.
     Omitted,
     /// The mean of the tractions of all faces that meet at the node, each with its own shape functions (Eqs. 44, 45).
     Averaged,
     /// Equilibrium as inside the body.
     Equilibrium,
-    /// The value that the nodes around give there.
-    Fitted,
 }
 
 impl FrontNodes {

@@ -2,6 +2,8 @@
 
 use riss::geometry::obstacles::Opaque;
 use riss::math::{Vector, axis};
+use riss::model::SurfacePoint;
+use riss::system::Collocation;
 use riss::nodes::cloud::{Cloud, Facet, Place, Side, SurfaceId};
 
 /// A box from `lower` to `upper`; part `2 d` is its face at the lower end of axis `d`, part `2 d + 1` at the upper.
@@ -141,4 +143,21 @@ fn push<const D: usize>(
         (None, false) => Place::Surface(facets),
     };
     cloud.push(p, p - sum * small, spacing, place);
+}
+
+/// Largest error of displacements over the largest exact one.
+pub fn displacement_error<const D: usize>(
+    collocation: &Collocation<D>,
+    found: &[Vector<D>],
+    exact: impl Fn(&SurfacePoint<D>) -> Vector<D>,
+) -> f64 {
+    let cloud = collocation.cloud();
+    let (mut error, mut scale) = (0.0f64, 0.0f64);
+    for (i, u) in found.iter().enumerate() {
+        let (position, sight) = (cloud.positions[i], cloud.sights[i]);
+        let expected = exact(&SurfacePoint { position, normal: Vector::zeros(), sight });
+        error = error.max((u - expected).norm());
+        scale = scale.max(expected.norm());
+    }
+    error / scale
 }

@@ -1,119 +1,116 @@
-//! The field of a crack tip in a square.
+//! The field of a crack tip in a square and of a crack front in a cuboid [C3D, section 3.1].
+//!
+//! The exact displacement is prescribed on the outside, the faces are free: the factors must come back.
 
-use crate::boxes::{Box, Crack, HalfPlane};
+use crate::boxes::{Box, Crack, HalfPlane, displacement_error};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
 use riss::exact::{CrackFrontField, CrackTipField, ExactField};
-use riss::fracture::{FrontFactors, front_integrals};
+use riss::fracture::front_integrals;
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Vector, Vector2, axis};
 use riss::model::{RigidMotion, Solid, SurfaceConditions, SurfacePoint, VectorField};
-use riss::system::{Collocation, CollocationSettings, CollocationSolver, FrontNodes};
+use riss::system::{Collocation, CollocationSettings};
 use std::sync::Arc;
-use std::time::Instant;
 
 fn material() -> Elasticity {
     Elasticity { young: 200e3, poisson: 0.3, plane: PlaneState::Strain }
 }
 
-fn env(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}
-
-fn experiment_settings() -> CollocationSettings {
-    let mut settings = CollocationSettings { solver: CollocationSolver::Automatic, ..Default::default() };
-    settings.approximation.order = env("ORDER", 3.0) as usize;
-    let k = env("NEIGH", 0.0) as usize;
-    settings.approximation.neighbors = (k > 0).then_some(k);
-    settings.front_nodes = [FrontNodes::Omitted, FrontNodes::Averaged, FrontNodes::Equilibrium, FrontNodes::Fitted][env("FRONT", 0.0) as usize];
-    settings
-}
-
-#[test]
-fn square() {
-    let n = env("N", 20.0) as usize;
-    let reach = env("REACH", 0.4);
-    let field = CrackTipField { tip: Vector2::zeros(), angle: 0.0, k1: 1.0, k2: 0.5, t_stress: 0.0 };
-    let exact = move |x: Vector2, sight: Vector2| {
-        let x = if x.y == 0.0 { Vector2::new(x.x, sight.y * 1e-9) } else { x };
-        field.displacement(&material(), x)
-    };
-    let displacement = VectorField::Function(Arc::new(move |at: &SurfacePoint<2>| exact(at.position, at.sight)));
-    let solid = Solid {
+fn solid<const D: usize>(displacement: VectorField<D>) -> Solid<D> {
+    Solid {
         material: material(),
-        parts: vec![SurfaceConditions::displacement(displacement); 4],
+        parts: vec![SurfaceConditions::displacement(displacement); 2 * D],
         faces: vec![VectorField::zero()],
         body_force: VectorField::zero(),
         rigid_motion: RigidMotion::Supported,
-    };
-    let frame = FrontFrame { position: Vector::zeros(), ahead: axis::<2>(0), normal: axis::<2>(1), curvature: 0.0 };
-    let fronts = vec![EnrichedFront { line: FrontLine::new(vec![frame], FrontEnds::Open), reach }];
-    let body = Box { crack: Crack::HalfPlane, seed: env("SEED", 7.0) as u64, jitter: env("JITTER", 0.2), ..Box::<2>::cube(n) };
-    let collocation = Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), fronts, experiment_settings());
-    let start = Instant::now();
-    let system = collocation.assemble().unwrap();
-    let assembled = start.elapsed();
-    let found = collocation.solve(&system).unwrap();
-    let solved = start.elapsed();
-    let error = collocation.cloud().positions.iter().zip(&found.displacements).zip(&collocation.cloud().sights).map(|((p, u), s)| (u - exact(*p, *s)).norm()).fold(0.0, f64::max);
-    let scale = exact(Vector2::new(-1.0, 1.0), Vector2::new(-1.0, 1.0)).norm();
-    eprintln!("n {n} reach {reach} error {:.2e} {:?} {assembled:?} {solved:?}", error / scale, found.effort);
-    if env("DEBUG", 0.0) > 0.0 {
-        let cloud = collocation.cloud();
-        let u: Vec<f64> = (0..cloud.len()).flat_map(|i| { let v = exact(cloud.positions[i], cloud.sights[i]); [v.x, v.y] }).collect();
-        let mut r = vec![0.0; u.len()];
-        system.residual_into(&u, &mut r);
-        let mut order: Vec<usize> = (0..cloud.len()).collect();
-        let size = |i: usize| r[2 * i].hypot(r[2 * i + 1]);
-        order.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
-        for &i in order.iter().take(12) {
-            let mut shape = riss::approximation::ShapeFunctions::default();
-            let radius = collocation.approximation.at_node(i as u32, cloud.sights[i], &mut Default::default(), &mut shape).unwrap();
-            let big = shape.second_derivatives.iter().map(|s| s.norm()).fold(0.0, f64::max);
-            eprintln!("   {} {:.3e} at {:?} r {:.3} radius {radius} n {} big {big:.2e} {:?}", i, size(i) / scale, cloud.positions[i], cloud.positions[i].norm(), shape.neighbors.len(), matches!(cloud.places[i], riss::nodes::cloud::Place::Inside));
-        }
-        let mut near: Vec<usize> = (0..cloud.len()).collect();
-        near.sort_by(|a, b| cloud.positions[*a].norm().total_cmp(&cloud.positions[*b].norm()));
-        for &i in near.iter().take(12) {
-            eprintln!("   near {:?} error {:.2e} residual {:.2e}", cloud.positions[i], (found.displacements[i] - exact(cloud.positions[i], cloud.sights[i])).norm() / scale, size(i) / scale);
-        }
-    }
-    let discs = front_integrals(&collocation, &found.displacements, &frame, 0, &[0.2, 0.3, 0.4, 0.6, 0.8]).unwrap();
-    for d in discs {
-        eprintln!("  R {} K1 {:+.3}% K2 {:+.3}% J {:+.3}%", d.radius, 100.0 * (d.factors[0] - 1.0), 100.0 * (d.factors[1] / 0.5 - 1.0), 100.0 * (d.j / 1.25 * material().effective_young() - 1.0));
     }
 }
 
-#[test]
-fn cuboid() {
-    let n = env("N3", 14.0) as usize;
-    let reach = env("REACH3", 4.0);
-    let (a, b) = (10.0, 4.0);
-    let z = Vector::<3>::z();
-    let field = CrackFrontField { origin: Vector::<3>::zeros(), ahead: Vector::<3>::x(), normal: z, factors: [1.0, env("K2", 0.0), 0.0] };
-    let exact = move |at: &SurfacePoint<3>| field.evaluate(&material(), at.position, at.sight).0;
-    let displacement = VectorField::Function(Arc::new(exact));
-    let held = SurfaceConditions::displacement(displacement);
-    let mut parts = vec![held; 6];
-    parts[2] = SurfaceConditions::symmetry();
-    parts[3] = SurfaceConditions::symmetry();
-    let solid = Solid { material: material(), parts, faces: vec![VectorField::zero()], body_force: VectorField::zero(), rigid_motion: RigidMotion::Supported };
-    let frame = |y: f64| FrontFrame { position: Vector::<3>::new(0.0, y, 0.0), ahead: Vector::<3>::x(), normal: z, curvature: 0.0 };
-    let line = FrontLine::new(vec![frame(0.0), frame(b)], FrontEnds::Open);
-    let ny = ((b / (2.0 * a / n as f64)).round() as usize).max(3);
-    let body = Box { lower: Vector::<3>::new(-a, 0.0, -a), upper: Vector::<3>::new(a, b, a), steps: [n, ny, n], seed: env("SEED", 7.0) as u64, jitter: env("JITTER", 0.2), crack: Crack::HalfPlane };
-    let start = Instant::now();
-    let collocation = Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![EnrichedFront { line, reach }], experiment_settings());
-    let system = collocation.assemble().unwrap();
-    eprintln!("n {n} {ny} nodes {} reach {reach} assembled {:?}", collocation.cloud().len(), start.elapsed());
-    let found = collocation.solve(&system).unwrap();
-    let cloud = collocation.cloud();
-    let error = (0..cloud.len()).map(|i| (found.displacements[i] - exact(&SurfacePoint { position: cloud.positions[i], normal: z, sight: cloud.sights[i] })).norm()).fold(0.0, f64::max);
-    let scale = exact(&SurfacePoint::inside(Vector::<3>::new(-a, 0.0, a))).norm();
-    eprintln!("  error {:.2e} {:?} {:?}", error / scale, found.effort, start.elapsed());
-    for y in [0.0, 0.5, 1.0, 2.0, 3.0, 4.0] {
-        let discs = front_integrals(&collocation, &found.displacements, &frame(y), 0, &[2.0, 3.0, 4.0, 6.0, 8.0]).unwrap();
-        let text: Vec<String> = discs.iter().map(|d| format!("{:+.3}/{:+.3}/{:+.3}", 100.0 * (d.factors[0] - 1.0), 100.0 * d.factors[1], 100.0 * d.factors[2])).collect();
-        eprintln!("  y {y}: {} | {:?}", text.join("  "), FrontFactors::of(&discs).uncertainty);
+fn frame<const D: usize>(along: f64) -> FrontFrame<D> {
+    let mut position = Vector::zeros();
+    if D == 3 {
+        position[1] = along;
     }
-    eprintln!("  {:?}", start.elapsed());
+    FrontFrame { position, ahead: axis(0), normal: axis(D - 1), curvature: 0.0 }
+}
+
+/// Both modes in the square of half side 1 with `n` steps; errors are relative to the larger factor.
+fn check_square(n: usize, seed: u64, allowed: f64) {
+    let field = CrackTipField { tip: Vector2::zeros(), angle: 0.0, k1: 1.0, k2: 0.5, t_stress: 0.0 };
+    let exact = move |at: &SurfacePoint<2>| {
+        // The field is cut along the face.
+        let height = if at.position.y == 0.0 { at.sight.y * 1e-9 } else { at.position.y };
+        field.displacement(&material(), Vector2::new(at.position.x, height))
+    };
+    let line = FrontLine::new(vec![frame::<2>(0.0)], FrontEnds::Open);
+    let body = Box { crack: Crack::HalfPlane, seed, ..Box::<2>::cube(n) };
+    let front = EnrichedFront::new(line, body.spacing().max());
+    let solid = solid(VectorField::Function(Arc::new(exact)));
+    let collocation =
+        Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![front], CollocationSettings::default());
+    let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
+    let discs = front_integrals(&collocation, &found.displacements, &frame(0.0), 0, &[0.3, 0.4, 0.6, 0.8]).unwrap();
+    let j = 1.25 / material().effective_young();
+    for disc in discs {
+        let errors = [disc.factors[0] - 1.0, disc.factors[1] - 0.5, 0.5 * (disc.j / j - 1.0)];
+        assert!(errors.iter().all(|e| e.abs() < allowed), "{n} steps: {errors:?} {disc:?}");
+    }
+}
+
+/// 0.2 % with ten nodes to the half side and 0.04 % with twenty are asked for; mixed mode may have 0.1 %.
+#[test]
+fn square_with_enriched_basis() {
+    for seed in [7, 8, 9] {
+        check_square(20, seed, 0.002);
+        check_square(40, seed, 0.001);
+    }
+}
+
+/// The box of the paper: a = 10, b = 4; `n` steps along the sides of length 20.
+fn cuboid(n: usize) -> Box<3> {
+    let (a, b) = (10.0, 4.0);
+    let steps = (b * n as f64 / (2.0 * a)).round() as usize;
+    Box {
+        lower: Vector::<3>::new(-a, 0.0, -a),
+        upper: Vector::<3>::new(a, b, a),
+        steps: [n, steps, n],
+        crack: Crack::HalfPlane,
+        ..Box::cube(1)
+    }
+}
+
+fn check_cuboid(n: usize, factors: [f64; 3], allowed: f64) {
+    let (ahead, normal) = (axis(0), axis(2));
+    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors };
+    let exact = move |at: &SurfacePoint<3>| field.evaluate(&material(), at.position, at.sight).0;
+    let mut solid = solid(VectorField::Function(Arc::new(exact)));
+    if factors[2] == 0.0 {
+        solid.parts[2] = SurfaceConditions::symmetry();
+        solid.parts[3] = SurfaceConditions::symmetry();
+    }
+    let body = cuboid(n);
+    let line = FrontLine::new(vec![frame::<3>(0.0), frame(4.0)], FrontEnds::Open);
+    let front = EnrichedFront::new(line, body.spacing().max());
+    let collocation =
+        Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![front], CollocationSettings::default());
+    let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
+    assert!(displacement_error(&collocation, &found.displacements, exact) < 3.0 * allowed);
+    for along in [0.0, 0.3, 1.0, 2.0, 3.3, 4.0] {
+        let discs = front_integrals(&collocation, &found.displacements, &frame(along), 0, &[3.0, 4.0, 6.0]).unwrap();
+        for disc in discs {
+            let errors: [f64; 3] = std::array::from_fn(|m| disc.factors[m] - factors[m]);
+            assert!(errors.iter().all(|e| e.abs() < allowed), "at {along}: {errors:?}");
+        }
+    }
+}
+
+/// 15,309 nodes; the paper has 0.94 % with its basis and 15,160.
+#[test]
+fn tanaka_cuboid_has_its_factor_along_the_whole_front() {
+    check_cuboid(40, [1.0, 0.0, 0.0], 0.002);
+}
+
+#[test]
+fn cuboid_in_all_modes() {
+    check_cuboid(20, [1.0, 0.5, -0.8], 0.01);
 }
