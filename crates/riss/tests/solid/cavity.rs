@@ -68,7 +68,9 @@ fn spherical_cavity_concentrates_stress_as_goodier_found() {
         body_force: VectorField::zero(),
         rigid_motion: RigidMotion::Supported,
     };
-    let collocation = Collocation::new(solid, &cloud(16), Arc::new(Clear), vec![], CollocationSettings::default());
+    let mut settings = CollocationSettings::default();
+    settings.approximation.order = std::env::var("ORDER").map_or(3, |v| v.parse().unwrap());
+    let collocation = Collocation::new(solid, &cloud(std::env::var("N").map_or(16, |v| v.parse().unwrap())), Arc::new(Clear), vec![], settings);
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     let gradients = collocation.gradients(&found.displacements).unwrap();
     let stress = |at: Vector<3>| {

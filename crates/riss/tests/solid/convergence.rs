@@ -13,7 +13,7 @@ fn material() -> Elasticity {
 
 /// Sum of `a sin(d·x + c)`.
 const WAVES: [([f64; 3], [f64; 3], f64); 2] =
-    [([1.0, -0.7, 0.4], [1.2, 1.0, -1.5], 0.3), ([-0.3, 0.5, 0.8], [-0.6, 1.7, 1.1], 1.1)];
+    [([1.0, -0.7, 0.4], [0.7, 0.6, -0.9], 0.3), ([-0.3, 0.5, 0.8], [-0.4, 1.0, 0.7], 1.1)];
 
 fn waves<const D: usize>() -> [(Vector<D>, Vector<D>, f64); 2] {
     let of = |v: [f64; 3]| Vector::<D>::from_fn(|d, _| v[d]);
@@ -54,6 +54,7 @@ fn error<const D: usize>(n: usize, order: usize) -> f64 {
     };
     let mut settings = CollocationSettings::default();
     settings.approximation.order = order;
+    if let Ok(k) = std::env::var("NEIGH") { settings.approximation.neighbors = Some(k.parse().unwrap()); }
     let collocation = Collocation::new(solid, &Box::cube(n).cloud(), Arc::new(Clear), vec![], settings);
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     displacement_error(&collocation, &found.displacements, |at| displacement(at.position))
@@ -79,5 +80,18 @@ fn rates_in_the_plane() {
 fn rates_in_space() {
     for order in 2..=4 {
         check_rate::<3>(order, [8, 16]);
+    }
+}
+
+#[test]
+fn experiment() {
+    let var = |n: &str, d: usize| std::env::var(n).ok().map_or(d, |v| v.parse().unwrap());
+    let (o, a, b) = (var("ORDER", 2), var("A", 8), var("B", 8));
+    if var("DIM", 2) == 2 {
+        let e = [error::<2>(a, o), error::<2>(b, o)];
+        eprintln!("D 2 order {o} {e:?} rate {:.2}", (e[0] / e[1]).ln() / (b as f64 / a as f64).ln());
+    } else {
+        let e = [error::<3>(a, o), error::<3>(b, o)];
+        eprintln!("D 3 order {o} {e:?} rate {:.2}", (e[0] / e[1]).ln() / (b as f64 / a as f64).ln());
     }
 }
