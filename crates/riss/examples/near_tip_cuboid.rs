@@ -1,10 +1,11 @@
 //! The near-tip cuboid of [C3D, section 3.1] at any size: factors along the front, time by stage and memory.
 //!
-//! `cargo run --release -p riss --example near_tip_cuboid -- STEPS [ORDER [NEIGHBORS [REACH [POISSON]]]]` with the
+//! `cargo run --release -p riss --example near_tip_cuboid -- STEPS [ORDER [NEIGHBORS [REACH [POISSON [SEED]]]]]` with the
 //! number of steps along the long sides, 40, 76 and 112 for the nodes of the paper's table, and the reach of the
 //! functions of the front over the spacing, 0 for none.
 
 #[path = "../tests/solid/boxes.rs"]
+#[allow(dead_code)]
 mod boxes;
 
 use boxes::{Box, Crack, HalfPlane, displacement_error};
@@ -42,6 +43,7 @@ fn main() -> Result<(), Failure> {
         upper: Vector::<3>::new(a, b, a),
         steps: [n as usize, (b * n / (2.0 * a)).round() as usize, n as usize],
         crack: Crack::HalfPlane,
+        seed: argument(5, 7.0) as u64,
         ..Box::cube(1)
     };
     let frame = |y: f64| FrontFrame { position: axis::<3>(1) * y, ahead, normal, curvature: 0.0 };
@@ -57,27 +59,39 @@ fn main() -> Result<(), Failure> {
     let start = Instant::now();
     let collocation = Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![front], settings);
     println!("{} nodes in {:.2} s", collocation.cloud().len(), start.elapsed().as_secs_f64());
-    let start = Instant::now();
+    let (start, before) = (Instant::now(), processor());
     let system = collocation.assemble()?;
-    println!("assembled in {:.2} s, peak {:.2} GB", start.elapsed().as_secs_f64(), peak());
-    let start = Instant::now();
+    let stage = |name: &str, start: Instant, before: f64| {
+        let (clock, spent) = (start.elapsed().as_secs_f64(), processor() - before);
+        println!("{name} in {clock:.2} s, {spent:.2} s of processors, peak {:.2} GB", peak());
+    };
+    stage("assembled", start, before);
+    let (start, before) = (Instant::now(), processor());
     let found = collocation.solve(&system)?;
-    println!("solved in {:.2} s, peak {:.2} GB: {:?}", start.elapsed().as_secs_f64(), peak(), found.effort);
+    stage("solved", start, before);
+    println!("{:?}", found.effort);
     println!("largest error of the displacement {:.2e}", displacement_error(&collocation, &found.displacements, exact));
-    let start = Instant::now();
+    let (start, before) = (Instant::now(), processor());
     for k in 0..=8 {
         let y = b * f64::from(k) / 8.0;
         let discs = front_integrals(&collocation, &found.displacements, &frame(y), 0, &[2.0, 3.0, 4.0, 6.0])?;
         let errors: Vec<String> = discs.iter().map(|d| format!("{:+.4} %", 100.0 * (d.factors[0] - 1.0))).collect();
         println!("K_I at y = {y:.1}: {}", errors.join(" "));
     }
-    println!("factors in {:.2} s", start.elapsed().as_secs_f64());
+    stage("factors", start, before);
     Ok(())
 }
 
 type Failure = std::boxed::Box<dyn Error>;
 
-/// Largest memory so far [GB], where the system tells.
+/// Processor time of all threads so far in seconds, where the system tells; on a busy machine it says more than the clock.
+fn processor() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let ticks: Vec<f64> = stat.split_whitespace().skip(13).take(2).filter_map(|t| t.parse().ok()).collect();
+    ticks.iter().sum::<f64>() / 100.0
+}
+
+/// Largest memory so far in gigabytes, where the system tells.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|l| l.starts_with("VmHWM"));

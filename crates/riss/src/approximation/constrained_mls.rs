@@ -9,10 +9,10 @@ use super::front_functions::{FrontFrame, FrontLine};
 use super::least_squares::{Column, LeastSquares};
 use super::settings::{CollocationWeight, ConstrainedMlsSettings};
 use super::taylor_basis::TaylorBasis;
+use super::visible_nodes::VisibleNodes;
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Opaque;
-use crate::geometry::tree::BoxTree;
 use crate::math::{Matrix, Vector};
 use crate::nodes::cloud::Cloud;
 use std::sync::Arc;
@@ -36,15 +36,11 @@ const REACH: f64 = 8.0;
 /// Constrained moving least squares over a cloud.
 #[derive(Clone)]
 pub struct ConstrainedMls<const D: usize> {
-    cloud: Cloud<D>,
-    tree: BoxTree<D>,
-    obstacles: Arc<dyn Opaque<D> + Send>,
+    nodes: VisibleNodes<D>,
     fronts: Vec<EnrichedFront<D>>,
     basis: TaylorBasis<D>,
     columns: Vec<Column<D>>,
     settings: ConstrainedMlsSettings,
-    /// Diagonal of the box around all nodes.
-    extent: f64,
 }
 
 /// A front with the distance from it up to which the basis is enriched.
@@ -107,7 +103,6 @@ impl<const D: usize> ConstrainedMls<D> {
         fronts: Vec<EnrichedFront<D>>,
         settings: ConstrainedMlsSettings,
     ) -> Self {
-        let tree = BoxTree::of_points(&cloud.positions);
         let basis = TaylorBasis::new(settings.order);
         let columns = (0..basis.len())
             .map(|k| {
@@ -115,13 +110,12 @@ impl<const D: usize> ConstrainedMls<D> {
                 Column { value: 0.0, gradient, second_derivatives }
             })
             .collect();
-        let extent = Aabb::of_points(cloud.positions.iter().copied()).size().norm();
-        Self { cloud, tree, obstacles, fronts, basis, columns, settings, extent }
+        Self { nodes: VisibleNodes::new(cloud, obstacles), fronts, basis, columns, settings }
     }
 
     /// The nodes.
     pub fn cloud(&self) -> &Cloud<D> {
-        &self.cloud
+        self.nodes.cloud()
     }
 
     /// Number of nodes of a support, its center included.
@@ -140,7 +134,7 @@ impl<const D: usize> ConstrainedMls<D> {
         buffer: &mut FitBuffer<D>,
         shape: &mut ShapeFunctions<D>,
     ) -> Result<f64> {
-        self.evaluate(Center::Node(node), self.cloud.positions[node as usize], sight, buffer, shape)
+        self.evaluate(Center::Node(node), self.cloud().positions[node as usize], sight, buffer, shape)
     }
 
     /// Shape functions at a node of a front by the other nodes: what the field takes there if it is regular.
@@ -156,7 +150,7 @@ impl<const D: usize> ConstrainedMls<D> {
         buffer: &mut FitBuffer<D>,
         shape: &mut ShapeFunctions<D>,
     ) -> Result<f64> {
-        self.evaluate(Center::Without(node), self.cloud.positions[node as usize], sight, buffer, shape)
+        self.evaluate(Center::Without(node), self.cloud().positions[node as usize], sight, buffer, shape)
     }
 
     /// Shape functions and derivatives anywhere, seen from `sight`. Returns the support radius.
@@ -184,7 +178,7 @@ impl<const D: usize> ConstrainedMls<D> {
         let mut wanted = self.support_size();
         let FitBuffer { candidates, fit } = buffer;
         for round in 0..=ROUNDS {
-            let radius = self.gather(center, at, sight, wanted, candidates);
+            let radius = self.nodes.nearest_into(center.own(), at, sight, wanted, candidates);
             let rank = self.fit(center, at, sight, radius, candidates, fit);
             // In the last round higher terms may go, such as the third power across a body of three layers.
             let complete = if round < ROUNDS { rank.is_complete } else { rank.n_leading == self.n_needed() };
@@ -206,74 +200,6 @@ impl<const D: usize> ConstrainedMls<D> {
     fn poor(&self, center: Center<D>, at: Vector<D>, n_neighbors: usize) -> Error {
         let node = center.own().map(|i| i as usize);
         Error::PoorStencil { node, position: at.iter().copied().collect(), n_neighbors, needed: self.basis.len() }
-    }
-
-    /// The nearest visible nodes, nearest first, without the center; returns the support radius.
-    ///
-    /// The support is the largest one that holds no more than `wanted` nodes [C3D, after Eq. 12].
-    fn gather(
-        &self,
-        center: Center<D>,
-        at: Vector<D>,
-        sight: Vector<D>,
-        wanted: usize,
-        found: &mut Vec<(f64, u32)>,
-    ) -> f64 {
-        let own = center.own();
-        let spacing = own.map_or_else(|| self.spacing_near(at), |i| self.cloud.spacings[i as usize]);
-        let needed = wanted - usize::from(own.is_some());
-        let mut radius = 1.15 * spacing * ball_radius::<D>(wanted);
-        loop {
-            found.clear();
-            let r2 = radius * radius;
-            self.tree.visit(&Aabb::around(at, Vector::repeat(radius)), |j| {
-                let d2 = (self.cloud.positions[j as usize] - at).norm_squared();
-                if d2 <= r2 && own != Some(j) {
-                    found.push((d2, j));
-                }
-            });
-            let is_all = radius > self.extent;
-            if found.len() > needed || is_all {
-                found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                let mut n_visible = 0;
-                found.retain(|&(_, j)| {
-                    let keep = n_visible <= needed && self.obstacles.visible(sight, self.cloud.sights[j as usize]);
-                    n_visible += usize::from(keep);
-                    keep
-                });
-                if n_visible > needed || is_all {
-                    break;
-                }
-            }
-            radius *= 1.25;
-        }
-        if found.len() <= needed {
-            // The whole body: the farthest node keeps a small weight.
-            return 1.1 * found.last().map_or(radius, |last| last.0.sqrt());
-        }
-        let limit = found[needed].0;
-        // Nodes as far as the first one that is left out have no weight.
-        let kept = found.partition_point(|f| f.0 < limit);
-        found.truncate(kept);
-        limit.sqrt()
-    }
-
-    /// Spacing of a node near a point.
-    fn spacing_near(&self, at: Vector<D>) -> f64 {
-        let mut radius = self.extent / (self.cloud.len() as f64).powf(1.0 / D as f64);
-        loop {
-            let mut nearest = (f64::INFINITY, radius);
-            self.tree.visit(&Aabb::around(at, Vector::repeat(radius)), |j| {
-                let d2 = (self.cloud.positions[j as usize] - at).norm_squared();
-                if d2 < nearest.0 {
-                    nearest = (d2, self.cloud.spacings[j as usize]);
-                }
-            });
-            if nearest.0.is_finite() || radius > self.extent {
-                return nearest.1;
-            }
-            radius *= 2.0;
-        }
     }
 
     /// The frame of the front whose functions are in the basis at a point.
@@ -312,7 +238,7 @@ impl<const D: usize> ConstrainedMls<D> {
             fit.add_constant();
         }
         fit.add_columns(&self.columns, neighbors, |j, values| {
-            self.basis.values_into(&((self.cloud.positions[j as usize] - at) / radius), values);
+            self.basis.values_into(&((self.cloud().positions[j as usize] - at) / radius), values);
         });
         let n_leading = self.n_needed();
         let kept_constant = !has_constant || fit.orthogonalize(1, DEPENDENT) == 1;
@@ -345,7 +271,7 @@ impl<const D: usize> ConstrainedMls<D> {
             second_derivatives: if slope > 0.0 { jet.second_derivatives * (slope * radius) } else { Matrix::zeros() },
         });
         fit.add_columns(&columns, neighbors, |j, values| {
-            let f = frame.values(self.cloud.positions[j as usize], self.cloud.sights[j as usize]);
+            let f = frame.values(self.cloud().positions[j as usize], self.cloud().sights[j as usize]);
             for (k, value) in values.iter_mut().enumerate() {
                 *value = (f[k] - jets[k].value) * scale;
             }
@@ -393,13 +319,6 @@ struct Rank {
     is_complete: bool,
     /// Terms up to second order.
     n_leading: usize,
-}
-
-/// Radius of a ball that holds `n` unit cells.
-pub fn ball_radius<const D: usize>(n: usize) -> f64 {
-    use std::f64::consts::PI;
-    let unit_ball = if D == 2 { PI } else { 4.0 / 3.0 * PI };
-    (n as f64 / unit_ball).powf(1.0 / D as f64)
 }
 
 /// Nodes of a support for `l` terms: 7.89 L in space [C3D, after Eq. 12]; in the plane 4.44 L reach as far.

@@ -86,11 +86,7 @@ impl<const D: usize> FrontFrame<D> {
                 + (mixed + mixed.transpose()) * (-0.5 * g1)
                 + across * across.transpose() * (g2 + 0.5 * g);
             let by_first = (0.5 * g * cos - g1 * sin) / r.sqrt();
-            Jet {
-                value: r.sqrt() * g,
-                gradient: slope,
-                second_derivatives: second / (r * r.sqrt()) + bend * by_first,
-            }
+            Jet { value: r.sqrt() * g, gradient: slope, second_derivatives: second / (r * r.sqrt()) + bend * by_first }
         })
     }
 }
@@ -188,7 +184,9 @@ mod tests {
     fn derivatives_are_those_of_finite_differences() {
         for curvature in [0.0, 0.5, -0.4] {
             let f = frame(curvature);
-            for at in [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1), Vector::<3>::new(0.3, -0.5, 0.2)] {
+            for at in
+                [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1), Vector::<3>::new(0.3, -0.5, 0.2)]
+            {
                 let jets = f.jets(at, at);
                 for d in 0..3 {
                     let step = Vector::<3>::ith(d, 1e-6);
@@ -219,7 +217,10 @@ mod tests {
             let near = front.nearest(Vector::<3>::new(angle.cos() * 1.8, angle.sin() * 1.8, 0.2)).unwrap();
             let expected = Vector::<3>::new(angle.cos(), angle.sin(), 0.0);
             // The sagitta of a chord is 2 (1 - cos 7.5°) = 0.017: what is left of it is of higher order.
-            assert!((near.position - expected * 2.0).norm() < 2e-4 && (near.ahead - expected).norm() < 2e-4, "{near:?}");
+            assert!(
+                (near.position - expected * 2.0).norm() < 2e-4 && (near.ahead - expected).norm() < 2e-4,
+                "{near:?}"
+            );
             assert!((near.curvature - 0.5).abs() < 1e-12);
         }
     }

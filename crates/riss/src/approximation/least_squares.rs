@@ -57,11 +57,7 @@ impl<const D: usize> LeastSquares<D> {
     /// Adds the function one.
     pub fn add_constant(&mut self) {
         self.values.extend_from_slice(&self.roots);
-        self.derivatives.push(Column {
-            value: 1.0,
-            gradient: Vector::zeros(),
-            second_derivatives: Matrix::zeros(),
-        });
+        self.derivatives.push(Column { value: 1.0, gradient: Vector::zeros(), second_derivatives: Matrix::zeros() });
     }
 
     /// Adds functions; `fill` writes their values at a neighbor.

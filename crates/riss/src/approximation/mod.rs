@@ -18,6 +18,7 @@ pub mod settings;
 mod sight;
 pub mod taylor_basis;
 pub mod tip_functions;
+pub mod visible_nodes;
 mod ways;
 pub mod weight_function;
 
@@ -27,8 +28,8 @@ pub use enrichment::Enrichment;
 pub use front_functions::{FrontEnds, FrontFrame, FrontLine};
 pub use moving_least_squares::{MovingLeastSquares, Surroundings};
 pub use settings::{
-    ApproximationSettings, Basis, CollocationWeight, ConstrainedMlsSettings, CrackSmoothing, EnrichmentKind, EnrichmentSettings, HoleSmoothing, Ramp,
-    SmoothingSettings, SpacingFrom, SupportShape, WeightFunction,
+    ApproximationSettings, Basis, CollocationWeight, ConstrainedMlsSettings, CrackSmoothing, EnrichmentKind,
+    EnrichmentSettings, HoleSmoothing, Ramp, SmoothingSettings, SpacingFrom, SupportShape, WeightFunction,
 };
 
 /// Shape functions at one point. A buffer that is refilled, one per thread.

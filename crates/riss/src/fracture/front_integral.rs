@@ -162,7 +162,12 @@ impl<const D: usize> Disc<'_, D> {
         let turn = |g: Matrix<D>| self.axes.transpose() * g * self.axes;
         let (gradient, gradient_along) = (turn(gradient), turn(along));
         let material = &self.collocation.solid.material;
-        Ok(State { gradient, stress: stress(material, &gradient), gradient_along, stress_along: stress(material, &gradient_along) })
+        Ok(State {
+            gradient,
+            stress: stress(material, &gradient),
+            gradient_along,
+            stress_along: stress(material, &gradient_along),
+        })
     }
 
     fn area_term(&self, p: &DiscPoint, radius: f64, buffer: &mut Buffer<D>) -> Result<Integrals> {
@@ -230,7 +235,8 @@ fn along<const D: usize>(state: &State<D>, stress: &Matrix<D>, gradient: &Matrix
     if D < 3 {
         return 0.0;
     }
-    -state.stress_along.column(D - 1).dot(&gradient.column(0)) - stress.column(D - 1).dot(&state.gradient_along.column(0))
+    -state.stress_along.column(D - 1).dot(&gradient.column(0))
+        - stress.column(D - 1).dot(&state.gradient_along.column(0))
 }
 
 fn stress<const D: usize>(material: &Elasticity, gradient: &Matrix<D>) -> Matrix<D> {

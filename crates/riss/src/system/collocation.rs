@@ -7,7 +7,7 @@
 use super::block_rows::{Block, BlockRows, CHUNK, RowChunk};
 use super::collocation_settings::CollocationSettings;
 use super::node_conditions::{NodeConditions, Strong, StrongTerm};
-use crate::approximation::constrained_mls::ball_radius;
+use crate::approximation::visible_nodes::ball_radius;
 use crate::approximation::{ConstrainedMls, EnrichedFront, FitBuffer, ShapeFunctions};
 use crate::error::Result;
 use crate::geometry::aabb::Aabb;
@@ -209,9 +209,10 @@ fn morton_order<const D: usize>(positions: &[Vector<D>]) -> Vec<u32> {
     let scale = f64::from((1u32 << BITS) - 1) / bounds.size().max().max(f64::MIN_POSITIVE);
     let key = |p: &Vector<D>| {
         let cell = (p - bounds.lower) * scale;
-        (0..BITS).rev().flat_map(|bit| (0..D).map(move |d| (bit, d))).fold(0u64, |key, (bit, d)| {
-            key << 1 | (cell[d] as u64) >> bit & 1
-        })
+        (0..BITS)
+            .rev()
+            .flat_map(|bit| (0..D).map(move |d| (bit, d)))
+            .fold(0u64, |key, (bit, d)| key << 1 | (cell[d] as u64) >> bit & 1)
     };
     let mut order: Vec<(u64, u32)> = positions.iter().enumerate().map(|(i, p)| (key(p), i as u32)).collect();
     order.sort_unstable();

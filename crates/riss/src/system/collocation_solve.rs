@@ -85,9 +85,9 @@ impl<const D: usize> Collocation<D> {
         let motions = rigid_motions(&self.cloud().positions);
         let held = |a: &Vec<f64>, b: &Vec<f64>| -> f64 {
             let pairs = a.chunks_exact(D).zip(b.chunks_exact(D)).zip(fixed);
-            pairs.map(|((a, b), f)| {
-                (f * Vector::<D>::from_column_slice(b)).dot(&Vector::<D>::from_column_slice(a))
-            }).sum()
+            pairs
+                .map(|((a, b), f)| (f * Vector::<D>::from_column_slice(b)).dot(&Vector::<D>::from_column_slice(a)))
+                .sum()
         };
         let gram: Vec<Vec<f64>> = motions.iter().map(|a| motions.iter().map(|b| held(a, b)).collect()).collect();
         let (values, vectors) = symmetric_eigen(&gram);
@@ -264,7 +264,8 @@ fn rigid_motions<const D: usize>(positions: &[Vector<D>]) -> Vec<Vec<f64>> {
     let center = positions.iter().fold(Vector::<D>::zeros(), |s, p| s + p) / positions.len() as f64;
     let mut motions: Vec<Vec<f64>> = vec![];
     let mut add = |motion: &dyn Fn(&Vector<D>) -> Vector<D>| {
-        let mut v: Vec<f64> = positions.iter().flat_map(|p| motion(&(p - center)).iter().copied().collect::<Vec<_>>()).collect();
+        let mut v: Vec<f64> =
+            positions.iter().flat_map(|p| motion(&(p - center)).iter().copied().collect::<Vec<_>>()).collect();
         for m in &motions {
             let along = krylov::dot(m, &v);
             krylov::add(&mut v, -along, m);

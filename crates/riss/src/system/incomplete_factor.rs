@@ -140,9 +140,8 @@ impl<const D: usize> PartFactor<D> {
         }
         for side in [&mut before, &mut after] {
             if side.len() > MOST_BLOCKS {
-                let larger = |a: &(u32, Block<D>), b: &(u32, Block<D>)| {
-                    size(&b.1).total_cmp(&size(&a.1)).then(a.0.cmp(&b.0))
-                };
+                let larger =
+                    |a: &(u32, Block<D>), b: &(u32, Block<D>)| size(&b.1).total_cmp(&size(&a.1)).then(a.0.cmp(&b.0));
                 side.select_nth_unstable_by(MOST_BLOCKS, larger);
                 side.truncate(MOST_BLOCKS);
             }

@@ -71,7 +71,8 @@ impl<const D: usize> NodeConditions<D> {
             this.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
             return this;
         }
-        let one_sided = is_front || (settings.concave_corners == ConcaveCorners::Averaged && is_concave(position, facets));
+        let one_sided =
+            is_front || (settings.concave_corners == ConcaveCorners::Averaged && is_concave(position, facets));
         this.add_tractions(solid, position, sight, facets, one_sided);
         this
     }
@@ -110,14 +111,13 @@ impl<const D: usize> NodeConditions<D> {
         let has_natural = facets.iter().any(|f| is_natural(&f));
         let acting = || facets.iter().filter(|f| !has_natural || is_natural(f));
         let total: f64 = acting().map(|f| f.angle).sum();
-        let mut mean = StrongTerm {
-            equation: Strong::Traction { normal: Vector::zeros() },
-            load: Vector::zeros(),
-            sight,
-        };
+        let mut mean =
+            StrongTerm { equation: Strong::Traction { normal: Vector::zeros() }, load: Vector::zeros(), sight };
         for facet in acting() {
             let share = facet.angle / total;
-            let load = traction(solid, facet).value(&SurfacePoint { position, normal: facet.normal, sight: facet.sight }) * share;
+            let load =
+                traction(solid, facet).value(&SurfacePoint { position, normal: facet.normal, sight: facet.sight })
+                    * share;
             let own = facet.normal * share;
             if one_sided {
                 let equation = Strong::Traction { normal: own };

@@ -82,8 +82,7 @@ impl SparseLu {
         let symbolic = factorize_symbolic_lu(matrix.symbolic(), LuSymbolicParams::default())
             .map_err(|e| fail(format!("{e:?}")))?;
         let mut numeric = NumericLu::new();
-        let mut memory =
-            MemBuffer::new(symbolic.factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default()));
+        let mut memory = MemBuffer::new(symbolic.factorize_numeric_lu_scratch::<f64>(Par::Seq, Default::default()));
         symbolic
             .factorize_numeric_lu(
                 &mut numeric,

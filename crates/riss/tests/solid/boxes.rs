@@ -3,8 +3,8 @@
 use riss::geometry::obstacles::Opaque;
 use riss::math::{Vector, axis};
 use riss::model::SurfacePoint;
-use riss::system::Collocation;
 use riss::nodes::cloud::{Cloud, Facet, Place, Side, SurfaceId};
+use riss::system::Collocation;
 
 /// A box from `lower` to `upper`; part `2 d` is its face at the lower end of axis `d`, part `2 d + 1` at the upper.
 pub struct Box<const D: usize> {
@@ -94,7 +94,8 @@ impl<const D: usize> Box<D> {
                     p[d] += shift;
                 }
             }
-            let on_plane = self.crack == Crack::HalfPlane && (h[D - 1] * index[D - 1] as f64 + self.lower[D - 1]).abs() < 1e-9;
+            let on_plane =
+                self.crack == Crack::HalfPlane && (h[D - 1] * index[D - 1] as f64 + self.lower[D - 1]).abs() < 1e-9;
             let x = self.lower[0] + h[0] * index[0] as f64;
             if !on_plane || x > 1e-9 {
                 push(&mut cloud, p, h.max(), parts, None);

@@ -43,7 +43,8 @@ fn cloud(n: usize) -> Cloud<3> {
                 let position = ray * radius;
                 let sum = facets.iter().fold(Vector::<3>::zeros(), |s, f| s + f.1);
                 let sight = position - sum * (1e-4 * spacing);
-                let facet = |f: &(u32, Vector<3>)| Facet { surface: SurfaceId::Part(f.0), normal: f.1, sight, angle: 1.0 };
+                let facet =
+                    |f: &(u32, Vector<3>)| Facet { surface: SurfaceId::Part(f.0), normal: f.1, sight, angle: 1.0 };
                 let facets: Vec<Facet<3>> = facets.iter().map(facet).collect();
                 let place = if facets.is_empty() { Place::Inside } else { Place::Surface(facets) };
                 cloud.push(position, sight, spacing, place);
@@ -61,16 +62,11 @@ fn spherical_cavity_concentrates_stress_as_goodier_found() {
     let mut parts = vec![SurfaceConditions::symmetry(); 3];
     parts.push(SurfaceConditions::free());
     parts.push(SurfaceConditions::traction(VectorField::Function(Arc::new(move |at| tension * at.normal))));
-    let solid = Solid {
-        material,
-        parts,
-        faces: vec![],
-        body_force: VectorField::zero(),
-        rigid_motion: RigidMotion::Supported,
-    };
+    let solid =
+        Solid { material, parts, faces: vec![], body_force: VectorField::zero(), rigid_motion: RigidMotion::Supported };
     let mut settings = CollocationSettings::default();
-    settings.approximation.order = std::env::var("ORDER").map_or(3, |v| v.parse().unwrap());
-    let collocation = Collocation::new(solid, &cloud(std::env::var("N").map_or(16, |v| v.parse().unwrap())), Arc::new(Clear), vec![], settings);
+    settings.approximation.order = 4;
+    let collocation = Collocation::new(solid, &cloud(24), Arc::new(Clear), vec![], settings);
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     let gradients = collocation.gradients(&found.displacements).unwrap();
     let stress = |at: Vector<3>| {
@@ -84,7 +80,6 @@ fn spherical_cavity_concentrates_stress_as_goodier_found() {
     let pole = -(3.0 + 15.0 * nu) / (2.0 * (7.0 - 5.0 * nu));
     let at_equator = [axis::<3>(0), axis::<3>(1)].map(|at| stress(at)[(2, 2)]);
     let at_pole = [0, 1].map(|d| stress(axis::<3>(2))[(d, d)]);
-    eprintln!("{} nodes {at_equator:?} {equator} {at_pole:?} {pole} {:?}", collocation.cloud().len(), found.effort);
     assert!(at_equator.iter().all(|s| (s / equator - 1.0).abs() < 0.02), "{at_equator:?} {equator}");
     assert!(at_pole.iter().all(|s| (s - pole).abs() < 0.02 * equator), "{at_pole:?} {pole}");
 }

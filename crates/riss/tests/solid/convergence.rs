@@ -3,7 +3,9 @@
 use crate::boxes::{Box, Clear, displacement_error};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Matrix, Vector};
-use riss::model::{DirectedDisplacement, RigidMotion, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField};
+use riss::model::{
+    DirectedDisplacement, RigidMotion, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField,
+};
 use riss::system::{Collocation, CollocationSettings};
 use std::sync::Arc;
 
@@ -13,7 +15,7 @@ fn material() -> Elasticity {
 
 /// Sum of `a sin(d·x + c)`.
 const WAVES: [([f64; 3], [f64; 3], f64); 2] =
-    [([1.0, -0.7, 0.4], [0.7, 0.6, -0.9], 0.3), ([-0.3, 0.5, 0.8], [-0.4, 1.0, 0.7], 1.1)];
+    [([1.0, -0.7, 0.4], [0.3, 0.25, -0.4], 0.3), ([-0.3, 0.5, 0.8], [-0.2, 0.45, 0.3], 1.1)];
 
 fn waves<const D: usize>() -> [(Vector<D>, Vector<D>, f64); 2] {
     let of = |v: [f64; 3]| Vector::<D>::from_fn(|d, _| v[d]);
@@ -54,44 +56,32 @@ fn error<const D: usize>(n: usize, order: usize) -> f64 {
     };
     let mut settings = CollocationSettings::default();
     settings.approximation.order = order;
-    if let Ok(k) = std::env::var("NEIGH") { settings.approximation.neighbors = Some(k.parse().unwrap()); }
     let collocation = Collocation::new(solid, &Box::cube(n).cloud(), Arc::new(Clear), vec![], settings);
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     displacement_error(&collocation, &found.displacements, |at| displacement(at.position))
 }
 
-/// Second derivatives of a fit of order m are right up to h^(m-1), and displacements follow; even orders gain one by
-/// symmetry on regular nodes and most of it on irregular ones.
-fn check_rate<const D: usize>(order: usize, [coarse, fine]: [usize; 2]) {
+/// Second derivatives of a fit of order m are right up to h^(m-1), one order more where nodes are symmetric about the
+/// center, which is mean enough on irregular nodes: the displacement has the rates 2, 2 and 4 for m = 2, 3 and 4.
+///
+/// The third order comes to its rate from below, 1.87, 1.95 and 1.97 from 16 to 128 steps in the plane, because
+/// one-sided supports at the boundary are as wide as the body on coarse nodes; in space 26 steps reach 1.81.
+fn check_rate<const D: usize>(order: usize, [coarse, fine]: [usize; 2], least: f64) {
     let errors = [coarse, fine].map(|n| error::<D>(n, order));
     let rate = (errors[0] / errors[1]).ln() / (fine as f64 / coarse as f64).ln();
-    eprintln!("D {D} order {order}: {errors:?} rate {rate:.2}");
-    assert!(rate > order as f64 - 1.1, "order {order} in {D} dimensions: {errors:?} give the rate {rate:.2}");
+    assert!(rate > least, "order {order} in {D} dimensions: {errors:?} give the rate {rate:.2}");
 }
 
 #[test]
 fn rates_in_the_plane() {
-    for order in 2..=4 {
-        check_rate::<2>(order, [16, 48]);
-    }
+    check_rate::<2>(2, [16, 48], 1.9);
+    check_rate::<2>(3, [32, 96], 1.9);
+    check_rate::<2>(4, [16, 48], 3.6);
 }
 
 #[test]
 fn rates_in_space() {
-    for order in 2..=4 {
-        check_rate::<3>(order, [8, 16]);
-    }
-}
-
-#[test]
-fn experiment() {
-    let var = |n: &str, d: usize| std::env::var(n).ok().map_or(d, |v| v.parse().unwrap());
-    let (o, a, b) = (var("ORDER", 2), var("A", 8), var("B", 8));
-    if var("DIM", 2) == 2 {
-        let e = [error::<2>(a, o), error::<2>(b, o)];
-        eprintln!("D 2 order {o} {e:?} rate {:.2}", (e[0] / e[1]).ln() / (b as f64 / a as f64).ln());
-    } else {
-        let e = [error::<3>(a, o), error::<3>(b, o)];
-        eprintln!("D 3 order {o} {e:?} rate {:.2}", (e[0] / e[1]).ln() / (b as f64 / a as f64).ln());
-    }
+    check_rate::<3>(2, [10, 16], 1.9);
+    check_rate::<3>(3, [10, 16], 1.6);
+    check_rate::<3>(4, [10, 16], 3.6);
 }

@@ -3,7 +3,7 @@
 use crate::boxes::{Box, Clear, Crack, HalfPlane, displacement_error};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Matrix, Vector, axis};
-use riss::model::{RigidMotion, Solid, SolidDirection, SurfaceConditions, DirectedDisplacement, VectorField};
+use riss::model::{DirectedDisplacement, RigidMotion, Solid, SolidDirection, SurfaceConditions, VectorField};
 use riss::system::{Collocation, CollocationSettings, CollocationSolver};
 use std::sync::Arc;
 

@@ -31,7 +31,6 @@ fn cracked(poisson: f64, solver: CollocationSolver, motion: RigidMotion) -> Coll
 
 fn solve(collocation: &Collocation<3>) -> Vec<Vector<3>> {
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
-    eprintln!("{:?}", found.effort);
     found.displacements
 }
 

@@ -36,9 +36,8 @@ fn cloud<const D: usize>(n: usize, jitter: f64) -> Cloud<D> {
     let h = 2.0 / n as f64;
     let mut cloud = Cloud::default();
     for k in 0..n.pow(D as u32) {
-        let p = Vector::<D>::from_fn(|d, _| {
-            -1.0 + h * ((k / n.pow(d as u32) % n) as f64 + 0.5 + 2.0 * jitter * random())
-        });
+        let p =
+            Vector::<D>::from_fn(|d, _| -1.0 + h * ((k / n.pow(d as u32) % n) as f64 + 0.5 + 2.0 * jitter * random()));
         cloud.push(p, p, h, Place::Inside);
     }
     cloud
