@@ -3,7 +3,7 @@
 //! With the rows of collocation scaled like virtual work, the transposed prolongation is a good restriction.
 
 use super::aggregates::{Aggregates, NO_GROUP};
-use super::block_rows::BlockRows;
+use super::block_rows::{Block, BlockRows};
 use super::sparse_lu::{ScalarRows, SparseLu};
 use crate::error::Result;
 use crate::math::{Matrix, Vector};
@@ -168,10 +168,12 @@ impl<const D: usize> Parts<'_, D> {
                 let start = slots[other as usize] as usize * D * m;
                 let sum = &mut sums[start..start + D * m];
                 let (w, q) = (&self.factors[j as usize], &self.free[j as usize]);
-                for a in 0..D {
-                    for b in 0..D {
-                        let v: f64 = (0..D).map(|c| block[a][c] * q[(c, b)]).sum();
-                        (0..=D).for_each(|l| sum[a * m + l * D + b] += v * w[l]);
+                let block = if q.is_identity(0.0) { *block } else { times(block, q) };
+                for (sum, row) in sum.chunks_exact_mut(m).zip(&block) {
+                    for (sum, w) in sum.chunks_exact_mut(D).zip(w) {
+                        for b in 0..D {
+                            sum[b] += row[b] * w;
+                        }
                     }
                 }
             }
@@ -189,6 +191,10 @@ impl<const D: usize> Parts<'_, D> {
         found.sort_unstable_by_key(|f| f.0);
         found
     }
+}
+
+fn times<const D: usize>(block: &Block<D>, q: &Matrix<D>) -> Block<D> {
+    std::array::from_fn(|a| std::array::from_fn(|b| (0..D).map(|c| block[a][c] * q[(c, b)]).sum()))
 }
 
 /// `Pᵀ r`, into the first entries of `amplitudes`.

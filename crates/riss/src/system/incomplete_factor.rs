@@ -99,7 +99,7 @@ impl<const D: usize> PartFactor<D> {
             row.start(i);
             for (&j, block) in columns.iter().zip(blocks) {
                 if rows.contains(&(j as usize)) {
-                    row.add((j as usize - rows.start) as u32, block);
+                    *row.block((j as usize - rows.start) as u32) = *block;
                 }
             }
             let mean = row.entries.iter().map(|e| size(&e.1)).sum::<f64>() / row.entries.len() as f64;
@@ -121,7 +121,7 @@ impl<const D: usize> PartFactor<D> {
             row.entries[at].1 = factor;
             let range = self.upper.starts[k as usize]..self.upper.starts[k as usize + 1];
             for (&j, block) in self.upper.columns[range.clone()].iter().zip(&self.upper.blocks[range]) {
-                row.add(j, &negative_product(&factor, block));
+                row.subtract_product(j, &factor, block);
             }
         }
     }
@@ -189,20 +189,27 @@ impl<const D: usize> WorkRow<D> {
         self.entries.clear();
     }
 
+    /// The block of a column, made if there is none yet.
     #[inline]
-    fn add(&mut self, column: u32, block: &Block<D>) {
+    fn block(&mut self, column: u32) -> &mut Block<D> {
         let place = &mut self.places[column as usize];
         if *place == u32::MAX {
             *place = self.entries.len() as u32;
-            self.entries.push((column, *block));
+            self.entries.push((column, [[0.0; D]; D]));
             if (column as usize) < self.index {
                 self.open.push(Reverse(column));
             }
-        } else {
-            let own = &mut self.entries[*place as usize].1;
-            for a in 0..D {
+        }
+        &mut self.entries[*place as usize].1
+    }
+
+    #[inline]
+    fn subtract_product(&mut self, column: u32, factor: &Block<D>, block: &[[f32; D]; D]) {
+        let own = self.block(column);
+        for a in 0..D {
+            for k in 0..D {
                 for b in 0..D {
-                    own[a][b] += block[a][b];
+                    own[a][b] -= factor[a][k] * f64::from(block[k][b]);
                 }
             }
         }
@@ -211,17 +218,26 @@ impl<const D: usize> WorkRow<D> {
 
 #[inline]
 fn size<const D: usize>(block: &Block<D>) -> f64 {
-    block.iter().flatten().map(|v| v * v).sum::<f64>().sqrt()
+    let mut sum = 0.0;
+    for row in block {
+        for v in row {
+            sum += v * v;
+        }
+    }
+    sum.sqrt()
 }
 
 #[inline]
 fn product<const D: usize>(a: &Block<D>, b: &Block<D>) -> Block<D> {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..D).map(|k| a[i][k] * b[k][j]).sum()))
-}
-
-#[inline]
-fn negative_product<const D: usize>(a: &Block<D>, b: &[[f32; D]; D]) -> Block<D> {
-    std::array::from_fn(|i| std::array::from_fn(|j| -(0..D).map(|k| a[i][k] * f64::from(b[k][j])).sum::<f64>()))
+    let mut c = [[0.0; D]; D];
+    for i in 0..D {
+        for k in 0..D {
+            for j in 0..D {
+                c[i][j] += a[i][k] * b[k][j];
+            }
+        }
+    }
+    c
 }
 
 /// Inverse by elimination with pivots; of a singular block that of what is regular.
