@@ -14,6 +14,7 @@ mod resume;
 mod run;
 mod schema;
 mod shape;
+mod solid;
 mod table;
 
 use clap::{Parser, Subcommand};

@@ -4,10 +4,10 @@ use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::{self, Resumed};
-use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, table};
+use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, solid, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
-use riss::case::Case;
+use riss::case::{AnyCase, Case};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +45,11 @@ pub struct RunArguments {
 
 /// Runs a case; returns the exit code.
 pub fn run(arguments: &RunArguments) -> u8 {
+    if let Some(n) = arguments.threads
+        && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()
+    {
+        return refuse(&format!("cannot start {n} threads: {e}"));
+    }
     let known = match arguments.resume.as_deref().map(Resumed::read).transpose() {
         Ok(known) => known,
         Err(message) => return refuse(&message),
@@ -52,8 +57,13 @@ pub fn run(arguments: &RunArguments) -> u8 {
     let overrides = known.as_ref().map_or(vec![], |k| k.overrides.clone());
     let overrides: Vec<String> = overrides.into_iter().chain(arguments.overrides.iter().cloned()).collect();
     let path = arguments.case.clone().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
-    let case = match Case::read(&path, &overrides) {
-        Ok(case) => case,
+    let case = match AnyCase::read(&path, &overrides) {
+        Ok(AnyCase::Plane(case)) => *case,
+        Ok(AnyCase::Solid(_)) if arguments.resume.is_some() => return refuse("a solid has no growth to go on with"),
+        Ok(AnyCase::Solid(case)) => {
+            let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&path));
+            return solid::run(arguments, &case, &dir);
+        }
         Err(errors) => {
             diagnostics::report_errors(&errors);
             return BAD_CASE;
@@ -61,11 +71,6 @@ pub fn run(arguments: &RunArguments) -> u8 {
     };
     if !arguments.quiet {
         diagnostics::report_notes(&case);
-    }
-    if let Some(n) = arguments.threads
-        && let Err(e) = rayon::ThreadPoolBuilder::new().num_threads(n.into()).build_global()
-    {
-        return refuse(&format!("cannot start {n} threads: {e}"));
     }
     let dir = match &arguments.resume {
         Some(dir) => dir.clone(),

@@ -1,12 +1,14 @@
 //! Reads `expected.json`.
 
 use super::path::{self, Window};
+use super::quantity::Along;
 use super::{Expected, Quantity, Reference, RunBy, Target, Tolerance};
 use serde_json::{Map, Value};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
 const TIP_QUANTITIES: [&str; 5] = ["K_I", "K_II", "J", "T", "kink_angle_deg"];
+const FRONT_QUANTITIES: [&str; 4] = ["K_I", "K_II", "K_III", "J"];
 const SCALARS: [&str; 2] = ["strain_energy", "energy_error"];
 
 type Object = Map<String, Value>;
@@ -32,7 +34,7 @@ impl Expected {
     pub fn parse(text: &str, file: &dyn Fn(&str) -> Result<String, String>) -> Result<Self, String> {
         let root: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let root = object(&root, "the file")?;
-        let known = ["source", "run", "tips", "reactions", "paths", "end", "cycles"].into_iter().chain(SCALARS);
+        let known = ["source", "run", "tips", "fronts", "largest_principal_stress", "reactions", "paths", "end", "cycles"].into_iter().chain(SCALARS);
         only_known(root, &known.collect::<Vec<_>>(), "the file")?;
         let source = root.get("source").and_then(Value::as_str).ok_or("`source` is missing")?;
         let run_by = match root.get("run").map(Value::as_str) {
@@ -43,6 +45,12 @@ impl Expected {
         let mut reader = Reader { source, references: vec![] };
         for (place, tip) in list(root, "tips")? {
             reader.tip(tip, &place)?;
+        }
+        for (place, front) in list(root, "fronts")? {
+            reader.front(front, &place)?;
+        }
+        if let Some(value) = root.get("largest_principal_stress") {
+            reader.number(value, Quantity::LargestPrincipalStress, "largest_principal_stress", source)?;
         }
         for key in SCALARS {
             if let Some(value) = root.get(key) {
@@ -86,6 +94,30 @@ impl Reader<'_> {
             if let Some(value) = tip.get(key) {
                 let quantity = Quantity::Tip { crack: crack.clone(), end: end.clone(), key: key.into(), step };
                 let source = text(tip, "source").unwrap_or(self.source);
+                self.number(value, quantity, &format!("{place}.{key}"), source)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Without `take`, the least and the greatest value must both be near the reference.
+    fn front(&mut self, front: &Value, place: &str) -> Result<(), String> {
+        let front = object(front, place)?;
+        let known: Vec<&str> = ["crack", "take", "source"].into_iter().chain(FRONT_QUANTITIES).collect();
+        only_known(front, &known, place)?;
+        let crack = text(front, "crack").ok_or_else(|| format!("{place}: `crack` is missing"))?;
+        let which = match front.get("take").map(Value::as_str) {
+            None => vec![Along::Least, Along::Greatest],
+            Some(Some("least")) => vec![Along::Least],
+            Some(Some("greatest")) => vec![Along::Greatest],
+            Some(Some("mean")) => vec![Along::Mean],
+            Some(_) => return Err(format!("{place}: `take` must be \"least\", \"greatest\" or \"mean\"")),
+        };
+        for key in FRONT_QUANTITIES {
+            let Some(value) = front.get(key) else { continue };
+            for along in &which {
+                let quantity = Quantity::Front { crack: crack.into(), key: key.into(), along: *along };
+                let source = text(front, "source").unwrap_or(self.source);
                 self.number(value, quantity, &format!("{place}.{key}"), source)?;
             }
         }

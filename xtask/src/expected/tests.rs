@@ -163,3 +163,25 @@ fn numbers_are_short() {
         assert_eq!(number(value), text);
     }
 }
+
+#[test]
+fn fronts_are_compared_along_their_length() {
+    let point = |k: f64, k2: f64| json!({ "K_I": k, "K_II": k2 });
+    let results = json!({
+        "stress": { "largest_principal": 2.04 },
+        "fronts": [
+            { "crack": "penny", "points": [point(1.12, 0.6), point(1.14, -0.6)] },
+            { "crack": "other", "points": [{ "K_I": null }] },
+        ],
+    });
+    check_compare(
+        &results,
+        json!({ "source": "s", "largest_principal_stress": { "value": 2.045, "tolerance": 0.01 },
+            "fronts": [
+                { "crack": "penny", "K_I": { "value": 1.128, "tolerance": 0.01 } },
+                { "crack": "penny", "take": "greatest", "K_II": { "value": 0.6, "tolerance": 0.01 } },
+                { "crack": "penny", "take": "mean", "K_II": { "value": 0.0, "absolute": 1e-9 } },
+                { "crack": "other", "K_I": { "value": 1.0, "tolerance": 0.5 } } ] }),
+        &[true, false, true, true, false, false, true],
+    );
+}

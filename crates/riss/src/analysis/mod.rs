@@ -9,6 +9,8 @@ pub mod node_function;
 pub mod record;
 pub mod refinement;
 pub mod settings;
+pub mod solid_record;
+pub mod solid_static;
 
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
@@ -16,3 +18,5 @@ pub use node_function::{NodeFunction, nearest_node, sample_node_function};
 pub use record::*;
 pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;
+pub use solid_record::{FrontPointRecord, FrontRecord, OpenedCrack, SolidResult};
+pub use solid_static::{SolidSettings, solid_nodes, solid_static};

@@ -3,6 +3,7 @@
 //! Precedence as on paper: `-x^2` is `-(x^2)`, `2^3^2` is `2^9`. The grammar is `expression.pest`. A ready evaluator such
 //! as exmex would do, but binds a minus sign tighter than `^` and cannot read `1e-1`.
 
+use crate::math::Vector3;
 use crate::model::FieldPoint;
 use pest::Parser;
 use pest::error::{Error, ErrorVariant, InputLocation};
@@ -13,8 +14,10 @@ use std::sync::LazyLock;
 type Unary = fn(f64) -> f64;
 type Binary = fn(f64, f64) -> f64;
 
-/// What an expression may depend on.
-const VARIABLES: [&str; 4] = ["x", "y", "nx", "ny"];
+/// What an expression may depend on; the last two only in space.
+const VARIABLES: [&str; 6] = ["x", "y", "nx", "ny", "z", "nz"];
+/// How many of them there are in the plane.
+const IN_PLANE: usize = 4;
 /// Functions of one argument.
 const UNARY: [(&str, Unary); 17] = [
     ("sin", f64::sin),
@@ -88,8 +91,26 @@ impl BadExpression {
 }
 
 impl Expression {
-    /// Compiles a text.
+    /// Compiles a text for the plane.
     pub fn parse(text: &str) -> Result<Self, BadExpression> {
+        let names = || VARIABLES[..IN_PLANE].iter().copied().chain(["pi"]).collect();
+        let is_spatial = |name: &&str| VARIABLES[IN_PLANE..].contains(name);
+        let expression = Self::parse_in_space(text).map_err(|mut bad| {
+            bad.unknown.iter_mut().for_each(|(_, known)| known.retain(|name| !is_spatial(name)));
+            bad
+        })?;
+        let stranger = expression.steps.iter().find_map(|s| match s {
+            Step::Variable(k) if *k >= IN_PLANE => Some(VARIABLES[*k]),
+            Step::Variable(_) | Step::Number(_) | Step::Negate | Step::Unary(_) | Step::Binary(_) => None,
+        });
+        match stranger {
+            Some(name) => Err(unknown(format!("unknown variable `{name}`"), name, names())),
+            None => Ok(expression),
+        }
+    }
+
+    /// Compiles a text that may depend on z and nz too.
+    pub fn parse_in_space(text: &str) -> Result<Self, BadExpression> {
         if text.len() > MAX_LENGTH {
             return Err(BadExpression::new(format!("an expression has at most {MAX_LENGTH} characters")));
         }
@@ -111,7 +132,12 @@ impl Expression {
 
     /// The value at a point.
     pub fn value(&self, at: &FieldPoint) -> f64 {
-        self.run(&[at.position.x, at.position.y, at.normal.x, at.normal.y])
+        self.run(&[at.position.x, at.position.y, at.normal.x, at.normal.y, 0.0, 0.0])
+    }
+
+    /// The value at a point in space.
+    pub fn value_in_space(&self, position: Vector3, normal: Vector3) -> f64 {
+        self.run(&[position.x, position.y, normal.x, normal.y, position.z, normal.z])
     }
 
     fn run(&self, variables: &[f64; VARIABLES.len()]) -> f64 {

@@ -10,12 +10,14 @@ mod expression;
 pub mod gmsh;
 mod problem;
 mod schema;
+mod solid;
 
 use crate::analysis::{GrowthSettings, Settings};
 use crate::model::Model;
 use document::Document;
 pub use problem::{CaseErrors, Origin, Problem};
 pub use schema::OutputSettings;
+pub use solid::{AnyCase, SolidCase, solid_json_schema};
 use std::path::{Path, PathBuf};
 
 /// Larger files are refused.

@@ -7,6 +7,7 @@ pub mod domain;
 pub mod field;
 pub mod load;
 pub mod solid;
+pub mod solid_model;
 pub mod support;
 
 use crate::crack::{CrackPath, TipFrame, TipId};
@@ -20,6 +21,7 @@ pub use load::{BodyForce, BoundaryLoad, CrackFaceLoad, PointLoad, TractionValue}
 pub use solid::{
     DirectedDisplacement, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField, VectorFunction,
 };
+pub use solid_model::SolidModel;
 use std::sync::Arc;
 pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
 

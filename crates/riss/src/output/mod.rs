@@ -2,7 +2,8 @@
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
-//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`].
+//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`];
+//! for solids [`solid_results`], [`solid_files`], [`solid_picture`].
 
 mod color_map;
 pub mod comparison;
@@ -16,6 +17,9 @@ pub mod report;
 pub mod results;
 pub mod run_writer;
 pub mod shape_picture;
+pub mod solid_files;
+pub mod solid_picture;
+pub mod solid_results;
 mod svg;
 mod vtk;
 pub mod whole_file;
@@ -27,6 +31,9 @@ pub use report::{REPORT_FILE, RunSource, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;
+pub use solid_files::{write_solid_cloud, write_solid_results};
+pub use solid_picture::solid_picture;
+pub use solid_results::{SolidResults, solid_results_schema};
 
 use crate::analysis::StaticResult;
 use schemars::JsonSchema;

@@ -9,7 +9,7 @@ mod loads;
 mod mesh;
 mod outline;
 mod parts;
-mod report;
+pub(super) mod report;
 mod settings;
 mod supports;
 
@@ -90,7 +90,7 @@ pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem
 }
 
 /// Name of the file, or of its folder if the file is just called case.toml.
-fn default_title(path: &Path) -> String {
+pub(super) fn default_title(path: &Path) -> String {
     let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     if stem == "case" { folder.unwrap_or(stem) } else { stem }
