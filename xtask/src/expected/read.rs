@@ -34,7 +34,10 @@ impl Expected {
     pub fn parse(text: &str, file: &dyn Fn(&str) -> Result<String, String>) -> Result<Self, String> {
         let root: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let root = object(&root, "the file")?;
-        let known = ["source", "run", "tips", "fronts", "largest_principal_stress", "reactions", "paths", "end", "cycles"].into_iter().chain(SCALARS);
+        let known =
+            ["source", "run", "tips", "fronts", "largest_principal_stress", "reactions", "paths", "end", "cycles"]
+                .into_iter()
+                .chain(SCALARS);
         only_known(root, &known.collect::<Vec<_>>(), "the file")?;
         let source = root.get("source").and_then(Value::as_str).ok_or("`source` is missing")?;
         let run_by = match root.get("run").map(Value::as_str) {

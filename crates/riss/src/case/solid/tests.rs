@@ -154,7 +154,9 @@ fn stl_files_give_one_part_for_each_smooth_piece() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.stl"), &text).unwrap();
     let path = folder.path().join("case.toml");
-    let case = format!("{HEAD}geometry.stl.file = 't.stl'\nrigid_motion = 'mean-is-zero'\nload = [{{ on = 'face-1', pressure = 1 }}]");
+    let case = format!(
+        "{HEAD}geometry.stl.file = 't.stl'\nrigid_motion = 'mean-is-zero'\nload = [{{ on = 'face-1', pressure = 1 }}]"
+    );
     let Ok(AnyCase::Solid(case)) = AnyCase::parse(&case, &path, &[]) else { panic!() };
     let body = &case.model.body;
     assert!((body.volume() - 1.0 / 6.0).abs() < 1e-12);
@@ -168,7 +170,9 @@ fn stl_files_give_one_part_for_each_smooth_piece() {
 
 #[test]
 fn gmsh_models_give_one_part_for_each_physical_surface() {
-    let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 7 \"slope\"\n$EndPhysicalNames\n$Nodes\n4\n");
+    let mut text = String::from(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 7 \"slope\"\n$EndPhysicalNames\n$Nodes\n4\n",
+    );
     for (k, [x, y, z]) in CORNERS.iter().enumerate() {
         text += &format!("{} {x} {y} {z}\n", k + 1);
     }
