@@ -33,6 +33,13 @@ pub struct Jet<const D: usize> {
 }
 
 impl<const D: usize> FrontFrame<D> {
+    /// Unit tangent of the front, `ahead` × `normal`; zero in the plane.
+    pub fn tangent(&self) -> Vector<D> {
+        let (a, n) = (&self.ahead, &self.normal);
+        let cross = |i: usize| a[(i + 1) % D] * n[(i + 2) % D] - a[(i + 2) % D] * n[(i + 1) % D];
+        if D == 3 { Vector::from_fn(|i, _| cross(i)) } else { Vector::zeros() }
+    }
+
     /// Distances from the front along the crack and normal to it [length]: `√(x1² + x2²)` is that from the arc.
     #[inline]
     pub fn plane(&self, at: Vector<D>) -> [f64; 2] {
