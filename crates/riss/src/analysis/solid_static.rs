@@ -227,7 +227,7 @@ mod tests {
         let (model, result) = solve(
             "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 1000, poisson = 0.3 }\n\
              geometry.box = { lower = [-5, -5, -5], upper = [5, 5, 5] }\nremote_stress.zz = 1\n\
-             nodes = { spacing = 1.2, front_spacing = 0.12, growth = 0.25 }\nfracture.points = 6\n\
+             nodes = { spacing = 1.2, front_spacing = 0.09, growth = 0.14 }\nfracture.points = 6\n\
              crack = [{ name = 'penny', disc = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 } }]",
         );
         assert_eq!((model.crack_names[0].as_str(), result.fronts.len()), ("penny", 1));

@@ -5,6 +5,7 @@
 use super::{RunInfo, RunStatus};
 use crate::analysis::{FrontPointRecord, SolidResult};
 use crate::model::SolidModel;
+use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -59,7 +60,7 @@ pub struct SolverResults {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StressResults {
-    /// Largest principal stress at a node [stress].
+    /// Largest principal stress at a node that is not on a front [stress].
     pub largest_principal: Option<f64>,
     /// Where it is.
     pub position: Option<[f64; 3]>,
@@ -170,7 +171,10 @@ impl SolidResults {
 }
 
 fn stress(result: &SolidResult) -> StressResults {
+    // On a front the stress is none.
+    let is_front = |k: usize| matches!(result.cloud.places[k], Place::Front { .. });
     let largest = (0..result.n_nodes)
+        .filter(|k| !is_front(*k))
         .map(|k| (result.principal_stresses(k)[0], k))
         .filter(|(s, _)| s.is_finite())
         .max_by(|a, b| a.0.total_cmp(&b.0));
