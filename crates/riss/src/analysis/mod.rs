@@ -3,6 +3,7 @@
 pub mod contact;
 pub mod crack_growth;
 pub mod energy;
+mod error_bars;
 pub mod fields;
 pub mod linear_static;
 pub mod node_function;
