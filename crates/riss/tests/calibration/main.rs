@@ -9,12 +9,8 @@
 use riss::analysis::{Silent, linear_static};
 use riss::case::Case;
 use riss::crack::End;
-use riss::nodes::settings::{Graded, Layout};
-use riss::nodes::spacing::SpacingField;
 use std::path::{Path, PathBuf};
 
-/// Growth of the default spacing with distance, and the largest that is used.
-const GROWTH: [f64; 2] = [0.2, 0.6];
 /// Every so many of the bodies is in an ordinary run.
 const STRIDE: usize = 9;
 
@@ -55,13 +51,7 @@ fn compare(body: &str, tips: &[&Known], coarseness: f64) -> Vec<Found> {
     let text = std::fs::read_to_string(&path).unwrap();
     let mut case = Case::parse(&text, &path, &[]).unwrap_or_else(|e| panic!("{body}: {e:?}"));
     if coarseness != 1.0 {
-        let field = SpacingField::of_model(&case.model, &Graded::default());
-        let tip = case.model.tips().iter().map(|(_, frame)| field.at(frame.position)).fold(f64::INFINITY, f64::min);
-        case.settings.nodes.layout = Layout::Graded(Graded {
-            spacing: Some(coarseness * field.largest()),
-            tip_spacing: Some(coarseness * tip),
-            growth: Some((coarseness * GROWTH[0]).min(GROWTH[1])),
-        });
+        case.settings.nodes = case.settings.nodes.scaled(&case.model, coarseness).unwrap();
     }
     let result = linear_static(&case.model, &case.settings, &mut Silent).unwrap_or_else(|e| panic!("{body}: {e}"));
     let found = |tip: &&Known| {
