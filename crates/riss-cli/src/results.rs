@@ -93,11 +93,15 @@ pub fn json(case: &Case, run: &RunRecord, result: &StaticResult) -> String {
     results_json(&run.info(case, RunStatus::Done), result)
 }
 
-/// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.
+/// `NAME.riss-out` in the current folder.
 pub fn default_folder(case: &Path) -> PathBuf {
+    PathBuf::from(format!("{}.riss-out", name(case)))
+}
+
+/// Name of a case: the case file's, or its folder's if the file is just case.toml.
+pub fn name(case: &Path) -> String {
     let path = case.canonicalize().unwrap_or_else(|_| case.to_path_buf());
     let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    let name = if stem == "case" { folder.unwrap_or(stem) } else { stem };
-    PathBuf::from(format!("{name}.riss-out"))
+    if stem == "case" { folder.unwrap_or(stem) } else { stem }
 }

@@ -2,7 +2,8 @@
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
-//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`].
+//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
+//! [`run_table`] (of several runs), [`whole_file`].
 
 mod color_map;
 pub mod comparison;
@@ -14,6 +15,7 @@ pub mod history;
 pub mod model_picture;
 pub mod report;
 pub mod results;
+pub mod run_table;
 pub mod run_writer;
 pub mod shape_picture;
 mod svg;
