@@ -187,6 +187,9 @@ impl Document {
             },
         };
         place_all(&mut node, &(offset..text.len()), &(0..offset - 1));
+        // A parameter by its name alone.
+        let is_parameter = |name: &str| matches!(self.root.get("parameters").map(|n| &n.content), Some(Content::Table(t)) if t.contains_key(name));
+        let path = if path.len() == 1 && is_parameter(path[0]) { vec!["parameters", path[0]] } else { path };
         self.make_room(&path);
         insert(&mut self.root, &path, node).map_err(|message| bad(&message))
     }

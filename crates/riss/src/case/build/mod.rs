@@ -9,6 +9,7 @@ mod loads;
 mod mesh;
 mod outline;
 mod parts;
+mod plausibility;
 mod report;
 mod settings;
 mod supports;
@@ -18,7 +19,7 @@ use super::problem::Problem;
 use super::schema::{self, CaseFile, OutputSettings};
 use crate::analysis::{GrowthSettings, Settings};
 use crate::material::Elasticity;
-use crate::model::{Domain, Model, RigidMotion};
+use crate::model::{Domain, Model, RigidMotion, UnitNames};
 use boundary::Boundary;
 use loads::Setting;
 use report::Report;
@@ -28,12 +29,23 @@ use std::path::Path;
 /// The name that stands for every outer edge.
 const OUTLINE: &str = "outline";
 
-/// Model, settings, growth, output and notes.
-type Built = (Model, Settings, Option<GrowthSettings>, OutputSettings, Vec<Problem>);
+/// What a case means.
+pub(super) struct Built {
+    pub model: Model,
+    pub settings: Settings,
+    pub growth: Option<GrowthSettings>,
+    pub output: OutputSettings,
+    pub units: Option<UnitNames>,
+    pub notes: Vec<Problem>,
+}
 
 /// What a case means; `None` or more problems if it is not valid.
-pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
-    let faulty = super::check::check(document, &super::json_schema(), problems);
+pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
+    let schema = super::plain_schema();
+    let values = super::values::resolve(document, &schema, problems);
+    let document = &*document;
+    let mut faulty = super::check::check(document, &schema, problems);
+    faulty.extend(values.faulty);
     let file = deserialize(document, &faulty, problems)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut report = Report::new(document, problems);
@@ -86,7 +98,14 @@ pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem
     if let Some(growth) = &file.growth {
         growth::check(growth, &model, &mut report);
     }
-    Some((model, settings, file.growth, file.output, report.notes))
+    for name in values.unused {
+        report.note(format!("parameters.{name}"), "nothing uses this parameter");
+    }
+    if let Some(units) = &values.units {
+        plausibility::check(&file, units, &mut report);
+    }
+    let (output, notes) = (file.output, report.notes);
+    Some(Built { model, settings, growth: file.growth, output, units: values.units.map(|u| u.names), notes })
 }
 
 /// Name of the file, or of its folder if the file is just called case.toml.

@@ -17,6 +17,7 @@ use crate::nodes::settings::{Graded, Listed, Star, Structured};
 use crate::system::{ConstraintMethod, LinearSolver};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// `[x, y]` [length].
 pub(in crate::case) type Point = [f64; 2];
@@ -29,6 +30,12 @@ pub(in crate::case) struct CaseFile {
     /// Title in the results.
     #[serde(default)]
     pub title: Option<String>,
+    /// Units of length, force and stress, such as "mm, N, MPa"; then numbers may carry units of their own, "200 GPa".
+    #[serde(default, rename = "units")]
+    pub _units: Option<String>,
+    /// Numbers with names, for expressions such as "2*a" wherever a number is due, and for sweeps.
+    #[serde(default, rename = "parameters")]
+    pub _parameters: BTreeMap<String, f64>,
     /// Numerical method.
     #[serde(default, rename = "method")]
     pub _method: Method,
