@@ -87,7 +87,7 @@ pub fn follow(
     let fields = case.output.fields;
     let mut watch = Watch { case, writer, progress, speech, fields, last: None, error: None, files: vec![] };
     if speech == Speech::Table {
-        crate::print(&format!("{}\n", case.model.title));
+        crate::print(&format!("{}\n{}", case.model.title, table::units_line(case.units.as_ref())));
     }
     let outcome = crack_growth(&case.model, &case.settings, growth, state, &mut watch);
     watch.progress.finish();

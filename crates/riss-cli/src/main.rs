@@ -1,4 +1,5 @@
-//! The riss program: `run`, `check`, `compare`, `report`, `export`, `shape`, `schema`, `new`, `cases`, `completions`, `man`.
+//! The riss program: `run`, `check`, `compare`, `report`, `export`, `shape`, `schema`, `new`, `import`, `cases`,
+//! `completions`, `man`.
 
 mod batch;
 mod cases;
@@ -8,6 +9,7 @@ mod desktop;
 mod diagnostics;
 mod export;
 mod grow;
+mod import;
 mod manual;
 mod new;
 mod progress;
@@ -70,6 +72,8 @@ enum Command {
         #[arg(default_value = "case.toml")]
         file: PathBuf,
     },
+    /// Prints a case with the body, material, supports and loads of an Abaqus or CalculiX input file
+    Import(import::ImportArguments),
     /// Lists the gallery of ready cases, or copies one
     Cases(cases::CasesArguments),
     /// Prints the script that completes commands in a shell
@@ -89,6 +93,7 @@ fn main() -> ExitCode {
         Command::Shape(arguments) => shape::shape(&arguments),
         Command::Schema => schema::print(),
         Command::New { file } => new::write(&file),
+        Command::Import(arguments) => import::import(&arguments),
         Command::Cases(arguments) => cases::cases(&arguments),
         Command::Completions(arguments) => manual::completions(&arguments),
         Command::Man(arguments) => manual::man(&arguments),

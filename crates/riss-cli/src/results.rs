@@ -24,6 +24,7 @@ impl RunRecord {
         RunInfo {
             title: case.model.title.clone(),
             method: "element-free-galerkin".into(),
+            units: case.units.clone(),
             status,
             wall_time_s: self.wall_time_s,
             stage_time_s: self.stage_time_s.clone(),
@@ -72,6 +73,7 @@ pub fn source(case: &Case) -> RunSource {
         platform: format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
         threads: rayon::current_num_threads(),
         started_unix_s: since_1970.as_secs(),
+        settings: case.effective_settings(),
     }
 }
 

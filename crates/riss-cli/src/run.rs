@@ -153,7 +153,8 @@ fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, r
         crate::print(&results::json(case, run, result));
     } else {
         let size = format!("{} nodes, {} unknowns, {:.2} s", result.n_nodes, result.n_unknowns, run.wall_time_s);
-        crate::print(&format!("{}\n{size}\n\n{}", case.model.title, table::summary(result)));
+        let (title, units) = (&case.model.title, table::units_line(case.units.as_ref()));
+        crate::print(&format!("{title}\n{size}\n{units}\n{}", table::summary(result)));
     }
     match written {
         Ok(files) => {

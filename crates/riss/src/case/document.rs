@@ -151,6 +151,24 @@ impl Document {
         self.root.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()
     }
 
+    /// Adds a value where there is none yet; in messages it stands at the value of `place`.
+    pub fn add(&mut self, path: &[&str], value: &toml::Value, place: &str) {
+        let (origin, at) = self.find(place).map_or((Origin::File, 0), |n| (n.origin, n.span.start));
+        let is_there = match path {
+            [section] => self.root.contains_key(*section),
+            [section, key] => match self.root.get(*section).map(|n| &n.content) {
+                Some(Content::Table(table)) => table.contains_key(*key),
+                Some(_) => true,
+                None => false,
+            },
+            _ => true,
+        };
+        if !is_there {
+            // Whatever is in the way is reported by the check of the schema.
+            let _ = insert(&mut self.root, path, added(value, origin, at));
+        }
+    }
+
     /// Removes the kinds that give way to the one in `path`.
     fn make_room(&mut self, path: &[&str]) {
         for choice in CHOICES {
@@ -261,6 +279,22 @@ fn index(list: &[Node], step: &str) -> Option<usize> {
         _ => false,
     };
     list.iter().position(is_meant)
+}
+
+/// A value that stands nowhere in the text, placed at one byte of it.
+fn added(value: &toml::Value, origin: Origin, at: usize) -> Node {
+    let content = match value {
+        toml::Value::String(s) => Content::Text(s.clone()),
+        toml::Value::Integer(i) => Content::Integer(*i),
+        toml::Value::Float(v) => Content::Float(*v),
+        toml::Value::Boolean(b) => Content::Boolean(*b),
+        toml::Value::Datetime(d) => Content::Date(d.to_string()),
+        toml::Value::Array(list) => Content::List(list.iter().map(|v| added(v, origin, at)).collect()),
+        toml::Value::Table(table) => {
+            Content::Table(table.iter().map(|(k, v)| (k.clone(), added(v, origin, at))).collect())
+        }
+    };
+    Node { content, origin, span: at..at, key_span: at..at }
 }
 
 fn place_all(node: &mut Node, span: &Range<usize>, key_span: &Range<usize>) {

@@ -3,9 +3,11 @@
 //! Reading order: [`schema`] (what may be written), [`document`] (what was written), [`values`] with [`units`] and
 //! [`expression`] (texts that stand for numbers), [`check`] (names and types), [`build`] (geometry and sense). All mistakes are reported together, each at its line.
 
+mod abaqus;
 mod build;
 mod check;
 mod document;
+mod effective;
 mod expression;
 pub mod gmsh;
 mod problem;
@@ -15,6 +17,7 @@ mod values;
 
 use crate::analysis::{GrowthSettings, Settings};
 use crate::model::{Model, UnitNames};
+pub use abaqus::import_abaqus;
 use build::Built;
 use document::Document;
 pub use problem::{CaseErrors, Origin, Problem};

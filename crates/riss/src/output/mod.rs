@@ -31,6 +31,7 @@ pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;
 
 use crate::analysis::StaticResult;
+use crate::model::UnitNames;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -49,6 +50,8 @@ pub struct RunInfo {
     pub title: String,
     /// Name of the method.
     pub method: String,
+    /// Units, if the case says them.
+    pub units: Option<UnitNames>,
     /// How the run ended.
     pub status: RunStatus,
     /// Time from start to end [s].

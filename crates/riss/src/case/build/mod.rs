@@ -5,6 +5,7 @@ mod cracks;
 mod crossings;
 mod exact;
 mod growth;
+mod import;
 mod loads;
 mod mesh;
 mod outline;
@@ -14,6 +15,7 @@ mod report;
 mod settings;
 mod supports;
 
+use super::abaqus::AbaqusModel;
 use super::document::Document;
 use super::problem::Problem;
 use super::schema::{self, CaseFile, OutputSettings};
@@ -43,19 +45,23 @@ pub(super) struct Built {
 pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
     let schema = super::plain_schema();
     let values = super::values::resolve(document, &schema, problems);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let imported = import::import(document, folder, problems)?;
     let document = &*document;
     let mut faulty = super::check::check(document, &schema, problems);
     faulty.extend(values.faulty);
     let file = deserialize(document, &faulty, problems)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
     let mut report = Report::new(document, problems);
+    for remark in imported.iter().flat_map(|m| &m.remarks) {
+        report.note(import::KEY, remark);
+    }
     let material = material(&file.material, &mut report);
     let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
     let mut settings = settings::settings(&file, folder, &mut report);
     if ["geometry", "hole", "part"].iter().any(|key| faulty.contains(*key)) {
         return None;
     }
-    let domain = domain(&file, folder, &mut report)?;
+    let domain = domain(&file, imported.as_ref(), folder, &mut report)?;
     settings::check_layout(&mut settings, &file, &domain, &mut report);
     let cracks = cracks::cracks(&file.crack, &domain, &mut report);
     if let Some(contact) = &file.contact {
@@ -148,9 +154,13 @@ fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     Elasticity { young: m.young, poisson: m.poisson, plane: m.plane }
 }
 
-fn domain(file: &CaseFile, folder: &Path, report: &mut Report) -> Option<Domain> {
+fn domain(file: &CaseFile, imported: Option<&AbaqusModel>, folder: &Path, report: &mut Report) -> Option<Domain> {
     let mut boundary = Boundary::default();
-    let mut sound = outline::add_outline(&mut boundary, &file.geometry, folder, report).is_some();
+    let added = match imported {
+        Some(model) => mesh::add_domain(&mut boundary, &model.domain, import::KEY, report),
+        None => outline::add_outline(&mut boundary, &file.geometry, folder, report),
+    };
+    let mut sound = added.is_some();
     for (index, hole) in file.hole.iter().enumerate() {
         sound &= outline::add_hole(&mut boundary, hole, index, report).is_some();
     }

@@ -18,6 +18,9 @@ pub(in crate::case) enum Geometry {
     Outline(Outline),
     /// Boundary of a Gmsh mesh; parts are its physical curves.
     Gmsh(MeshFile),
+    /// Boundary of an input file of Abaqus or CalculiX; parts are its surfaces and sets. Its material, supports and loads
+    /// hold unless the case names its own.
+    Abaqus(MeshFile),
 }
 
 /// An axis-aligned rectangle.

@@ -16,7 +16,7 @@ use crate::model::Contact;
 use crate::nodes::settings::{Graded, Listed, Star, Structured};
 use crate::system::{ConstraintMethod, LinearSolver};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// `[x, y]` [length].
@@ -178,7 +178,7 @@ pub(in crate::case) struct NodeFile {
 }
 
 /// What is written besides the fracture quantities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputSettings {
     /// Positions, supports and parameters of the nodes.
