@@ -1,12 +1,13 @@
 //! `riss run` of several cases, or of one over a range of values: side by side, with one table of all results.
 
+use crate::claim::Claim;
 use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::run::RunArguments;
 use crate::sweep::{MOST_RUNS, combinations};
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, resume};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, resume};
 use riss::analysis::linear_static;
 use riss::case::Case;
 use riss::output::run_table::{RowStatus, RunRow, end_name, keys, table_csv, tips};
@@ -35,11 +36,14 @@ pub fn run(arguments: &RunArguments) -> u8 {
         Ok(jobs) => jobs,
         Err(code) => return code,
     };
+    let mut claims = vec![];
     for dir in jobs.iter().map(|j| &j.folder).chain([&folder]) {
-        if let Err(e) = results::prepare(dir) {
-            return cannot_write(dir, &e);
+        match Claim::of(dir) {
+            Ok(claim) => claims.push(claim),
+            Err(e) => return cannot_write(dir, &e),
         }
     }
+    interrupt::listen();
     let rows = match run_all(&jobs, &folder, arguments.quiet) {
         Ok(rows) => rows,
         Err(e) => return cannot_write(&folder, &e),
@@ -50,7 +54,7 @@ pub fn run(arguments: &RunArguments) -> u8 {
     } else {
         crate::print(&format!("{}\nwrote {}\n", describe(&rows), folder.join(TABLE_FILE).display()));
     }
-    if rows.iter().all(|r| r.status == RowStatus::Done) { DONE } else { STOPPED }
+    if rows.len() == jobs.len() && rows.iter().all(|r| r.status == RowStatus::Done) { DONE } else { STOPPED }
 }
 
 fn cannot_write(dir: &Path, error: &io::Error) -> u8 {
@@ -143,6 +147,9 @@ fn run_all(jobs: &[Job], folder: &Path, is_quiet: bool) -> io::Result<Vec<RunRow
             let rows: Vec<RunRow> = done.iter().flatten().cloned().collect();
             if let Err(e) = write_file(folder, TABLE_FILE, table_csv(&rows).as_bytes()) {
                 *failure.lock().unwrap_or_else(|e| e.into_inner()) = Some(e);
+                next.store(jobs.len(), Ordering::Relaxed);
+            }
+            if interrupt::is_asked() {
                 next.store(jobs.len(), Ordering::Relaxed);
             }
         }

@@ -1,5 +1,6 @@
 //! `riss check`.
 
+use crate::claim::Claim;
 use crate::table::number;
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
 use clap::Args;
@@ -44,7 +45,7 @@ pub fn check(arguments: &CheckArguments) -> u8 {
     crate::print(&line("nodes", discrete.approximation.nodes().len().to_string()));
     crate::print(&line("cells", format!("{} with {n_points} integration points", discrete.cells.len())));
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    match results::prepare(&dir).and_then(|()| results::write_picture(&dir, &case.model, &discrete)) {
+    match Claim::of(&dir).and_then(|_claim| results::write_picture(&dir, &case.model, &discrete)) {
         Ok(path) => {
             crate::print(&line("picture", path.display().to_string()));
             DONE

@@ -1,5 +1,6 @@
 //! `riss converge`.
 
+use crate::claim::Claim;
 use crate::progress::Progress;
 use crate::table::{aligned, number};
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
@@ -56,10 +57,13 @@ pub fn run(arguments: &ConvergeArguments) -> u8 {
         }
     };
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    if let Err(e) = results::prepare(&dir) {
-        eprintln!("error: cannot write to {}: {}", dir.display(), results::reason(&e));
-        return STOPPED;
-    }
+    let _claim = match Claim::of(&dir) {
+        Ok(claim) => claim,
+        Err(e) => {
+            eprintln!("error: cannot write to {}: {}", dir.display(), results::reason(&e));
+            return STOPPED;
+        }
+    };
     let mut progress = Progress::new(arguments.quiet);
     let study = converge(&case.model, &case.settings, &factors, &mut progress);
     progress.finish();

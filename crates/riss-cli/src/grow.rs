@@ -3,7 +3,7 @@
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::table::{self, number};
-use crate::{DONE, STOPPED};
+use crate::{DONE, STOPPED, interrupt};
 use riss::analysis::{
     GrowthEnd, GrowthEndKind, GrowthSettings, GrowthState, Observer, RefinementRecord, Stage, StaticResult, StepRecord,
     TipStatus, Warning, crack_growth,
@@ -96,7 +96,10 @@ pub fn follow(
     }
     match outcome {
         Ok(Some(end)) => Ok(Followed { end, last: watch.last, files: watch.files }),
-        Ok(None) => Err("the run was stopped".into()),
+        Ok(None) => {
+            let step = watch.last.map_or(0, |l| l.step.step);
+            Err(format!("stopped after step {step}, which is written; riss run --resume {} goes on", dir.display()))
+        }
         Err(e) => Err(e.to_string()),
     }
 }
@@ -160,7 +163,8 @@ impl Observer for Watch<'_> {
         match written {
             Ok(files) => {
                 self.files = files;
-                ControlFlow::Continue(())
+                let is_asked = interrupt::is_asked() && result.step.end.is_none();
+                if is_asked { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             }
             Err(e) => {
                 self.error = Some(e);

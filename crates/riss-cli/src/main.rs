@@ -4,6 +4,7 @@
 mod batch;
 mod cases;
 mod check;
+mod claim;
 mod compare;
 mod converge;
 mod desktop;
@@ -11,6 +12,7 @@ mod diagnostics;
 mod export;
 mod grow;
 mod import;
+mod interrupt;
 mod manual;
 mod new;
 mod progress;

@@ -33,14 +33,6 @@ impl RunRecord {
     }
 }
 
-/// Makes the folder for results and tries to write into it.
-pub fn prepare(dir: &Path) -> io::Result<()> {
-    std::fs::create_dir_all(dir)?;
-    let trial = dir.join(format!(".riss.{}.tmp", std::process::id()));
-    std::fs::write(&trial, b"")?;
-    std::fs::remove_file(trial)
-}
-
 /// What the system says, in words for the usual cases.
 pub fn reason(error: &io::Error) -> String {
     // Errors of the library name their file already.

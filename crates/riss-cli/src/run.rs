@@ -1,11 +1,12 @@
 //! `riss run`.
 
+use crate::claim::Claim;
 use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::{self, Resumed};
 use crate::sweep::Sweep;
-use crate::{BAD_CASE, DONE, STOPPED, batch, desktop, diagnostics, table};
+use crate::{BAD_CASE, DONE, STOPPED, batch, desktop, diagnostics, interrupt, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
 use riss::case::Case;
@@ -96,9 +97,11 @@ fn run_one(arguments: &RunArguments) -> u8 {
         None => arguments.out.clone().unwrap_or_else(|| results::default_folder(&path)),
     };
     // Before hours of work, not after.
-    if let Err(e) = results::prepare(&dir) {
-        return cannot_write(&dir, &e);
-    }
+    let _claim = match Claim::of(&dir) {
+        Ok(claim) => claim,
+        Err(e) => return cannot_write(&dir, &e),
+    };
+    interrupt::listen();
     let code = analyze(arguments, &case, known, &dir);
     if arguments.open && dir.join(riss::output::REPORT_FILE).is_file() {
         desktop::open(&dir.join(riss::output::REPORT_FILE));

@@ -1,5 +1,6 @@
 //! `riss shape`.
 
+use crate::claim::Claim;
 use crate::table::number;
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
 use clap::{ArgGroup, Args};
@@ -68,7 +69,7 @@ pub fn shape(arguments: &ShapeArguments) -> u8 {
     let radius = number(function.support_radius);
     crate::print(&format!("node {node} at ({}, {}), support radius {radius}\n", number(p.x), number(p.y)));
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    match results::prepare(&dir).and_then(|()| write_shape_pictures(&dir, &case.model, &function)) {
+    match Claim::of(&dir).and_then(|_claim| write_shape_pictures(&dir, &case.model, &function)) {
         Ok(paths) => {
             crate::print(&paths.iter().map(|p| format!("wrote {}\n", p.display())).collect::<String>());
             DONE
