@@ -6,8 +6,10 @@
 pub mod bench;
 pub mod calibrate;
 pub mod ci;
+pub mod dist;
 pub mod docs;
 pub mod expected;
+pub mod gallery;
 pub mod python;
 pub mod reference;
 pub mod tidy;

@@ -1,7 +1,7 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
-use xtask::{bench, calibrate, ci, docs, python, tidy, verify};
+use xtask::{bench, calibrate, ci, dist, docs, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
 
@@ -9,7 +9,8 @@ const TASKS: &str = "usage: cargo xtask <task>
   tidy    layers, headers, citations, names, file length, case folders
   verify  runs every case and compares it with its reference values; writes a table; grows random plates
   calibrate  compares the error bars of stress intensity factors with the errors in many bodies
-  docs    writes the generated page of the book, and builds the book where mdbook is installed
+  dist    builds one static program for Linux and a Python wheel into `target/dist`
+  docs    writes the generated pages of the book, and builds the book where mdbook is installed
   python  builds the Python package and tests it, in an environment under `target`
   bench   runs the benchmarks; further words go to `cargo bench`";
 
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         ("tidy", []) => tidy::run(),
         ("verify", names) => verify::run(names),
         ("calibrate", []) => calibrate::run(),
+        ("dist", []) => dist::run_all(),
         ("docs", []) => docs::run(),
         ("bench", rest) => bench::run(rest),
         ("python", []) => python::test(),

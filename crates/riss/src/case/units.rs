@@ -294,7 +294,7 @@ impl UnitSystem {
             let unit = Unit::parse(name).map_err(|message| (message, example()))?;
             let kinds = ["length", "force", "stress"];
             let of = |k: &&str| Dimension::named(k).is_some_and(|d| d.is_same(unit.dimension));
-            let Some(kind) = kinds.iter().position(|k| of(&k)) else {
+            let Some(kind) = kinds.iter().position(of) else {
                 return Err((format!("`{name}` is {}", unit.dimension.words()), example()));
             };
             if found[kind].replace((name.into(), unit)).is_some() {

@@ -45,7 +45,7 @@ fn wrong_units_are_explained() {
     );
     assert!(message(system, "80 Mpa").contains("unknown unit `Mpa`"));
     assert!(message("units = 'mm, N, GPa'", "80 MPa").contains("write \"mm, N, MPa\""));
-    assert_eq!(message("", "80 MPa").matches("the case does not say its units").count(), 4);
+    assert_eq!(message("", "80 MPa").matches("the case does not say its units").count(), 5);
     let mut poisson = template();
     poisson.head = "units = 'mm, N'".into();
     poisson.rest += "[contact]\npenalty = '3 mm'\n";
