@@ -22,6 +22,39 @@ pub enum Error {
         /// Least number of neighbors for the basis.
         needed: usize,
     },
+    /// The fit of point collocation has too few or badly placed neighbors.
+    #[error(
+        "the fit{} at {} has {n_neighbors} visible neighbors that do not determine second derivatives: {needed} or more in general position are needed; add nodes there",
+        node.map_or(String::new(), |i| format!(" of node {i}")), coordinates(position)
+    )]
+    PoorStencil {
+        /// The node, if the fit is at one.
+        node: Option<usize>,
+        /// Where the fit failed.
+        position: Vec<f64>,
+        /// Visible nodes in its support.
+        n_neighbors: usize,
+        /// Least number of neighbors for the basis.
+        needed: usize,
+    },
+    /// An iterative solver did not converge.
+    #[error(
+        "{method} reached a relative residual of {residual:.1e} in {iterations} iterations for {n_unknowns} unknowns, {allowed:.1e} is allowed{hint}"
+    )]
+    NotConverged {
+        /// What was tried.
+        method: String,
+        /// Multiplications by the matrix.
+        iterations: usize,
+        /// Size of the system.
+        n_unknowns: usize,
+        /// True relative residual reached.
+        residual: f64,
+        /// Relative residual that is allowed.
+        allowed: f64,
+        /// What may help, with a leading separator; may be empty.
+        hint: String,
+    },
     /// A part of the body can move without deforming.
     #[error("the body is not held: {motion} is free{}", component_text(*.component))]
     FreeRigidMotion {
@@ -58,6 +91,11 @@ pub enum Error {
         /// Why.
         reason: String,
     },
+}
+
+fn coordinates(position: &[f64]) -> String {
+    let text: Vec<String> = position.iter().map(|v| v.to_string()).collect();
+    format!("({})", text.join(", "))
 }
 
 fn component_text(component: Option<Vector2>) -> String {

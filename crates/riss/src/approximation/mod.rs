@@ -2,27 +2,34 @@
 //!
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
 //! from the [`weight_function`] of each visible neighbor and the fit in [`mls`], near tips with the functions of an
-//! [`enrichment`].
+//! [`enrichment`]; for point collocation [`ConstrainedMls`] does, by a fit in the [`taylor_basis`].
 
+pub mod constrained_mls;
 mod detour;
 pub mod discontinuity;
 mod enriched_fit;
 pub mod enrichment;
 mod fade;
+pub mod front_functions;
+mod least_squares;
 pub mod mls;
 pub mod moving_least_squares;
 pub mod settings;
 mod sight;
+pub mod taylor_basis;
 pub mod tip_functions;
+pub mod visible_nodes;
 mod ways;
 pub mod weight_function;
 
 use crate::math::{Matrix, Vector};
+pub use constrained_mls::{ConstrainedMls, EnrichedFront, FitBuffer};
 pub use enrichment::Enrichment;
+pub use front_functions::{FrontEnds, FrontFrame, FrontLine};
 pub use moving_least_squares::{MovingLeastSquares, Surroundings};
 pub use settings::{
-    ApproximationSettings, Basis, CrackSmoothing, EnrichmentKind, EnrichmentSettings, HoleSmoothing, Ramp,
-    SmoothingSettings, SpacingFrom, SupportShape, WeightFunction,
+    ApproximationSettings, Basis, CollocationWeight, ConstrainedMlsSettings, CrackSmoothing, EnrichmentKind,
+    EnrichmentSettings, HoleSmoothing, Ramp, SmoothingSettings, SpacingFrom, SupportShape, WeightFunction,
 };
 
 /// Shape functions at one point. A buffer that is refilled, one per thread.

@@ -247,3 +247,34 @@ pub enum SpacingFrom {
     /// The third nearest.
     ThirdNeighbor,
 }
+
+/// Constrained moving least squares for point collocation [C3D, section 2.1].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConstrainedMlsSettings {
+    /// Degree of the Taylor polynomials, at least 2.
+    #[schemars(range(min = 2, max = 6))]
+    pub order: usize,
+    /// Weight function.
+    pub weight: CollocationWeight,
+    /// Nodes in a support; if not given 7.89 for each term of the polynomial in space and 4.44 in the plane.
+    #[schemars(range(min = 6, max = 1000))]
+    pub neighbors: Option<usize>,
+}
+
+impl Default for ConstrainedMlsSettings {
+    fn default() -> Self {
+        Self { order: 3, weight: CollocationWeight::NonSmooth, neighbors: None }
+    }
+}
+
+/// Weight function of a fit that is not differentiated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum CollocationWeight {
+    /// `(1 - √s)²`, with a peak at the center [C3D, Eq. 12].
+    #[default]
+    NonSmooth,
+    /// A smooth one.
+    Smooth(WeightFunction),
+}

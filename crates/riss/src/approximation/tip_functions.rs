@@ -32,7 +32,7 @@ impl TipFunctions {
     }
 
     /// The functions over `√r`, with their first and second derivatives by the angle.
-    fn angular(self, theta: f64) -> [[f64; 3]; MOST_FUNCTIONS] {
+    pub(super) fn angular(self, theta: f64) -> [[f64; 3]; MOST_FUNCTIONS] {
         match self {
             Self::Full => {
                 let (s, c) = (0.5 * theta).sin_cos();

@@ -3,12 +3,14 @@
 //! Knows materials, but no model and no nodes.
 
 pub mod cantilever;
+pub mod crack_front_field;
 pub mod crack_tip_field;
 pub mod plate_with_hole;
 
 use crate::material::Elasticity;
 use crate::math::{Matrix2, Vector2};
 pub use cantilever::Cantilever;
+pub use crack_front_field::{CrackFrontField, out_of_plane_gradient};
 pub use crack_tip_field::CrackTipField;
 pub use plate_with_hole::PlateWithHole;
 

@@ -5,12 +5,14 @@
 
 pub mod configurational_force;
 pub mod fatigue;
+pub mod front_integral;
 pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod settings;
 pub mod tip_domain;
 
 pub use configurational_force::{ConfigurationalForce, configurational_forces, force_of_factors};
+pub use front_integral::{FrontFactors, FrontIntegrals, front_integrals};
 pub use growth_criterion::{EquivalentFactor, GrowthCriterion, TipDriving, kinked_factors};
 pub use interaction_integral::{
     FacePressure, ForceAt, GradientField, PressureAt, SolutionField, TipIntegrals, TipLoads, tip_integrals,

@@ -4,6 +4,7 @@
 
 pub mod cholesky;
 pub mod gauss_legendre;
+pub mod symmetric_eigen;
 
 /// A point or vector in `D` dimensions.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
@@ -13,6 +14,12 @@ pub type Matrix<const D: usize> = nalgebra::SMatrix<f64, D, D>;
 pub type Vector2 = Vector<2>;
 /// A tensor in the plane.
 pub type Matrix2 = Matrix<2>;
+
+/// Unit vector along an axis.
+#[inline]
+pub fn axis<const D: usize>(d: usize) -> Vector<D> {
+    Vector::from_fn(|k, _| if k == d { 1.0 } else { 0.0 })
+}
 
 /// Out-of-plane component of `a × b`: positive if `b` points to the left of `a`.
 #[inline]

@@ -6,6 +6,7 @@ pub mod contact;
 pub mod domain;
 pub mod field;
 pub mod load;
+pub mod solid;
 pub mod support;
 pub mod units;
 
@@ -17,6 +18,9 @@ pub use contact::Contact;
 pub use domain::{BoundaryPart, Domain, EdgeId, PartId};
 pub use field::{FieldPoint, ScalarField};
 pub use load::{BodyForce, BoundaryLoad, CrackFaceLoad, PointLoad, TractionValue};
+pub use solid::{
+    DirectedDisplacement, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField, VectorFunction,
+};
 use std::sync::Arc;
 pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
 pub use units::UnitNames;

@@ -1,0 +1,227 @@
+//! Functions of the distance and angle at a crack front [EFG, Eq. 50], in two and three dimensions.
+//!
+//! A front is a point in the plane and a curve in space. Near a place it is taken for an arc of a circle in the plane of
+//! the crack, so that distance and angle have closed derivatives.
+
+use super::tip_functions::{MOST_FUNCTIONS, TipFunctions};
+use crate::geometry::aabb::Aabb;
+use crate::math::{Matrix, Vector};
+use std::f64::consts::TAU;
+
+/// A point of a crack front with its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontFrame<const D: usize> {
+    /// The point.
+    pub position: Vector<D>,
+    /// Unit vector in the plane of the crack, normal to the front, away from the crack (x1).
+    pub ahead: Vector<D>,
+    /// Unit normal of the crack (x2).
+    pub normal: Vector<D>,
+    /// Curvature of the front in the plane of the crack [1/length]; positive if the crack is convex.
+    pub curvature: f64,
+}
+
+/// A function with first and second derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<const D: usize> {
+    /// Value.
+    pub value: f64,
+    /// Gradient.
+    pub gradient: Vector<D>,
+    /// Second derivatives.
+    pub second_derivatives: Matrix<D>,
+}
+
+impl<const D: usize> FrontFrame<D> {
+    /// Distances from the front along the crack and normal to it [length]: `√(x1² + x2²)` is that from the arc.
+    #[inline]
+    pub fn plane(&self, at: Vector<D>) -> [f64; 2] {
+        let d = at - self.position;
+        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
+        if self.curvature == 0.0 {
+            return [a, n];
+        }
+        let in_plane2 = (d.norm_squared() - n * n).max(0.0);
+        let q = self.curvature * (2.0 * a + self.curvature * in_plane2);
+        [(2.0 * a + self.curvature * in_plane2) / (1.0 + (1.0 + q).max(0.0).sqrt()), n]
+    }
+
+    /// Distance and angle; `sight` tells the side of points on the crack, where the angle is ±π.
+    #[inline]
+    pub fn polar(&self, at: Vector<D>, sight: Vector<D>) -> [f64; 2] {
+        let [x, y] = self.plane(at);
+        let theta = y.atan2(x);
+        if at == sight {
+            return [x.hypot(y), theta];
+        }
+        let [sx, sy] = self.plane(sight);
+        [x.hypot(y), theta + TAU * ((sy.atan2(sx) - theta) / TAU).round()]
+    }
+
+    /// Values of the four functions [√length].
+    #[inline]
+    pub fn values(&self, at: Vector<D>, sight: Vector<D>) -> [f64; MOST_FUNCTIONS] {
+        let [r, theta] = self.polar(at, sight);
+        TipFunctions::Full.angular(theta).map(|g| r.sqrt() * g[0])
+    }
+
+    /// Values and derivatives of the four functions; the point must not lie on the front.
+    pub fn jets(&self, at: Vector<D>, sight: Vector<D>) -> [Jet<D>; MOST_FUNCTIONS] {
+        let [r, theta] = self.polar(at, sight);
+        let (sin, cos) = theta.sin_cos();
+        let d = at - self.position;
+        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
+        let along = d - self.ahead * a - self.normal * n;
+        let q = self.curvature * (2.0 * a + self.curvature * (a * a + along.norm_squared()));
+        let stretch = (1.0 + q).max(f64::MIN_POSITIVE).sqrt();
+        let first = (self.ahead * (1.0 + self.curvature * a) + along * self.curvature) / stretch;
+        // The arc bends in its own plane only.
+        let plane = Matrix::identity() - first * first.transpose() - self.normal * self.normal.transpose();
+        let bend = plane * (self.curvature / stretch);
+        let (radial, across) = (first * cos + self.normal * sin, self.normal * cos - first * sin);
+        TipFunctions::Full.angular(theta).map(|[g, g1, g2]| {
+            let slope = (radial * (0.5 * g) + across * g1) / r.sqrt();
+            let mixed = radial * across.transpose();
+            let second = radial * radial.transpose() * (-0.25 * g)
+                + (mixed + mixed.transpose()) * (-0.5 * g1)
+                + across * across.transpose() * (g2 + 0.5 * g);
+            let by_first = (0.5 * g * cos - g1 * sin) / r.sqrt();
+            Jet { value: r.sqrt() * g, gradient: slope, second_derivatives: second / (r * r.sqrt()) + bend * by_first }
+        })
+    }
+}
+
+/// A crack front as a chain of points with their axes; a single point in the plane.
+#[derive(Clone, Debug)]
+pub struct FrontLine<const D: usize> {
+    frames: Vec<FrontFrame<D>>,
+    is_closed: bool,
+    bounds: Aabb<D>,
+}
+
+/// Whether the last point of a chain is joined to the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrontEnds {
+    /// Two ends.
+    Open,
+    /// None.
+    Closed,
+}
+
+impl<const D: usize> FrontLine<D> {
+    /// A front through the positions of `frames`; curvatures between them follow from their axes.
+    pub fn new(frames: Vec<FrontFrame<D>>, ends: FrontEnds) -> Self {
+        let bounds = Aabb::of_points(frames.iter().map(|f| f.position));
+        Self { frames, is_closed: ends == FrontEnds::Closed, bounds }
+    }
+
+    /// The points.
+    pub fn frames(&self) -> &[FrontFrame<D>] {
+        &self.frames
+    }
+
+    /// The box around the points.
+    pub fn bounds(&self) -> &Aabb<D> {
+        &self.bounds
+    }
+
+    /// The frame at the place of the front that is nearest to a point; none for a front without points.
+    pub fn nearest(&self, at: Vector<D>) -> Option<FrontFrame<D>> {
+        let n = self.frames.len();
+        if n < 2 {
+            return self.frames.first().copied();
+        }
+        let last = if self.is_closed { n } else { n - 1 };
+        let pairs = (0..last).map(|i| (&self.frames[i], &self.frames[(i + 1) % n]));
+        let mut best: Option<(f64, FrontFrame<D>)> = None;
+        for (a, b) in pairs {
+            let e = b.position - a.position;
+            let t = ((at - a.position).dot(&e) / e.norm_squared()).clamp(0.0, 1.0);
+            let distance = (at - a.position - e * t).norm_squared();
+            if best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, between(a, b, t)));
+            }
+        }
+        best.map(|(_, frame)| frame)
+    }
+}
+
+/// The frame at the fraction `t` of the way between two points of a front, on the arc through them.
+fn between<const D: usize>(a: &FrontFrame<D>, b: &FrontFrame<D>, t: f64) -> FrontFrame<D> {
+    let chord = b.position - a.position;
+    let curvature = (b.ahead - a.ahead).dot(&chord) / chord.norm_squared();
+    let normal = (a.normal * (1.0 - t) + b.normal * t).normalize();
+    let mean = a.ahead * (1.0 - t) + b.ahead * t;
+    let ahead = (mean - normal * mean.dot(&normal)).normalize();
+    let rise = 0.5 * curvature * chord.norm_squared() * t * (1.0 - t);
+    FrontFrame { position: a.position + chord * t + ahead * rise, ahead, normal, curvature }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(curvature: f64) -> FrontFrame<3> {
+        let ahead = Vector::<3>::new(0.6, 0.8, 0.0);
+        let normal = Vector::<3>::new(0.0, 0.0, 1.0);
+        FrontFrame { position: Vector::<3>::new(0.1, -0.2, 0.3), ahead, normal, curvature }
+    }
+
+    #[test]
+    fn distances_are_those_from_a_circle() {
+        for curvature in [0.5, -0.4] {
+            let f = frame(curvature);
+            let center = f.position - f.ahead / curvature;
+            for at in [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1)] {
+                let radius = (at - center - f.normal * (at - center).dot(&f.normal)).norm();
+                let expected = (radius - 1.0 / curvature.abs()) * curvature.signum();
+                assert!((f.plane(at)[0] - expected).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_finite_differences() {
+        for curvature in [0.0, 0.5, -0.4] {
+            let f = frame(curvature);
+            for at in
+                [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1), Vector::<3>::new(0.3, -0.5, 0.2)]
+            {
+                let jets = f.jets(at, at);
+                for d in 0..3 {
+                    let step = Vector::<3>::ith(d, 1e-6);
+                    let (ahead, behind) = (f.jets(at + step, at + step), f.jets(at - step, at - step));
+                    for k in 0..MOST_FUNCTIONS {
+                        assert!((jets[k].value - f.values(at, at)[k]).abs() < 1e-15);
+                        let slope = (ahead[k].value - behind[k].value) / 2e-6;
+                        assert!((slope - jets[k].gradient[d]).abs() < 1e-8, "{k} {d}: {slope} {:?}", jets[k]);
+                        let bend = (ahead[k].gradient - behind[k].gradient) / 2e-6;
+                        assert!((bend - jets[k].second_derivatives.column(d)).norm() < 1e-7, "{k} {d} {bend}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_of_points_gives_the_circle_back() {
+        let frames = (0..24)
+            .map(|k| {
+                let (s, c) = (TAU * k as f64 / 24.0).sin_cos();
+                let ahead = Vector::<3>::new(c, s, 0.0);
+                FrontFrame { position: ahead * 2.0, ahead, normal: Vector::<3>::z(), curvature: 0.0 }
+            })
+            .collect();
+        let front = FrontLine::new(frames, FrontEnds::Closed);
+        for angle in [0.0f64, 0.06, 0.13, 6.2] {
+            let near = front.nearest(Vector::<3>::new(angle.cos() * 1.8, angle.sin() * 1.8, 0.2)).unwrap();
+            let expected = Vector::<3>::new(angle.cos(), angle.sin(), 0.0);
+            // The sagitta of a chord is 2 (1 - cos 7.5°) = 0.017: what is left of it is of higher order.
+            assert!(
+                (near.position - expected * 2.0).norm() < 2e-4 && (near.ahead - expected).norm() < 2e-4,
+                "{near:?}"
+            );
+            assert!((near.curvature - 0.5).abs() < 1e-12);
+        }
+    }
+}

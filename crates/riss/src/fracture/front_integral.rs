@@ -1,0 +1,280 @@
+//! Stress intensity factors and J at points of a crack front, in the plane and in space.
+//!
+//! Over the disc normal to the front, with `P_1j = W δ_1j - σ_kj u_k,1` in the frame of the front point and `q` falling
+//! from one to zero [Moran1987],
+//! `J = -∫ P_1α q,α dA + ∫ (P_13,3 - b_k u_k,1) q dA - ∫_faces t_k u_k,1 q ds`, α = 1, 2.
+//! The second term holds what changes along the front; its derivatives are those of the fit. The auxiliary fields are
+//! those of a straight front, which are exact in the disc, so that no term for the curvature of the front is missing.
+
+use crate::approximation::{FitBuffer, FrontFrame, ShapeFunctions};
+use crate::error::Result;
+use crate::exact::crack_tip_field::{TipMode, tip_field};
+use crate::exact::out_of_plane_gradient;
+use crate::material::Elasticity;
+use crate::math::gauss_legendre::gauss_legendre;
+use crate::math::{Matrix, Vector, axis};
+use crate::model::{SurfacePoint, VectorField};
+use crate::system::Collocation;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// `q` is one up to this share of the radius and falls linearly from there.
+const PLATEAU: f64 = 0.5;
+/// Gauss points along the radius in the plateau and in the slope, and around each half of the disc.
+const RADIAL: usize = 8;
+const ANGULAR: usize = 20;
+/// Gauss points along each face.
+const FACE: usize = 16;
+/// Points on faces look from this far off, over the radius.
+const OFF: f64 = 1e-6;
+
+/// Fracture quantities at a point of a front from one disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontIntegrals {
+    /// Radius of the disc [length].
+    pub radius: f64,
+    /// Factors of modes I, II and III [stress·√length]; the last is zero in the plane.
+    pub factors: [f64; 3],
+    /// J-integral [stress·length].
+    pub j: f64,
+}
+
+/// Fracture quantities at a point of a front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontFactors {
+    /// Factors of modes I, II and III, mean of all discs [stress·√length].
+    pub factors: [f64; 3],
+    /// Largest deviation of a disc from the mean, over all modes [stress·√length].
+    pub uncertainty: f64,
+    /// J-integral, mean of all discs [stress·length].
+    pub j: f64,
+}
+
+impl FrontFactors {
+    /// Joins the results of some discs.
+    pub fn of(discs: &[FrontIntegrals]) -> Self {
+        let n = discs.len() as f64;
+        let factors = std::array::from_fn(|m| discs.iter().map(|d| d.factors[m]).sum::<f64>() / n);
+        let off = |d: &FrontIntegrals| (0..3).map(|m| (d.factors[m] - factors[m]).abs()).fold(0.0, f64::max);
+        Self {
+            factors,
+            uncertainty: discs.iter().map(off).fold(0.0, f64::max),
+            j: discs.iter().map(|d| d.j).sum::<f64>() / n,
+        }
+    }
+}
+
+/// Evaluates discs of the given radii at a point of the front of a crack.
+///
+/// The discs must lie inside the body, and the crack must be plane in them. The tangent that belongs to mode III is
+/// `ahead` × `normal`.
+///
+/// # Errors
+/// Those of the shape functions.
+pub fn front_integrals<const D: usize>(
+    collocation: &Collocation<D>,
+    displacements: &[Vector<D>],
+    frame: &FrontFrame<D>,
+    crack: usize,
+    radii: &[f64],
+) -> Result<Vec<FrontIntegrals>> {
+    let disc = Disc { collocation, displacements, frame, axes: axes(frame), crack };
+    radii.iter().map(|&radius| disc.integrate(radius)).collect()
+}
+
+/// Axes of a front point as columns.
+fn axes<const D: usize>(frame: &FrontFrame<D>) -> Matrix<D> {
+    let (a, n) = (&frame.ahead, &frame.normal);
+    Matrix::from_fn(|i, j| match j {
+        0 => a[i],
+        1 => n[i],
+        _ => a[(i + 1) % D] * n[(i + 2) % D] - a[(i + 2) % D] * n[(i + 1) % D],
+    })
+}
+
+/// Interactions with modes I to III, and the solution with itself.
+type Integrals = [f64; 4];
+
+struct Disc<'a, const D: usize> {
+    collocation: &'a Collocation<D>,
+    displacements: &'a [Vector<D>],
+    frame: &'a FrontFrame<D>,
+    axes: Matrix<D>,
+    crack: usize,
+}
+
+/// A point of a rule.
+struct DiscPoint {
+    r: f64,
+    theta: f64,
+    weight: f64,
+}
+
+/// The solution at a point, in the frame of the front.
+struct State<const D: usize> {
+    gradient: Matrix<D>,
+    stress: Matrix<D>,
+    /// Derivatives of both along the front.
+    gradient_along: Matrix<D>,
+    stress_along: Matrix<D>,
+}
+
+impl<const D: usize> Disc<'_, D> {
+    fn integrate(&self, radius: f64) -> Result<FrontIntegrals> {
+        let solid = &self.collocation.solid;
+        let mut points = ring(PLATEAU * radius, radius);
+        if D == 3 || !is_zero(&solid.body_force) {
+            points.extend(ring(0.0, PLATEAU * radius));
+        }
+        let values: Vec<Integrals> = points
+            .par_iter()
+            .map_init(Default::default, |buffer, p| self.area_term(p, radius, buffer))
+            .collect::<Result<_>>()?;
+        let mut sum = [0.0; 4];
+        // In order, so that any number of threads gives the same bits.
+        values.iter().for_each(|v| (0..4).for_each(|i| sum[i] += v[i]));
+        if !solid.faces.get(self.crack).is_none_or(is_zero) {
+            let faces = self.face_terms(radius)?;
+            (0..4).for_each(|i| sum[i] += faces[i]);
+        }
+        let material = &solid.material;
+        let young = material.effective_young();
+        let factors = [0.5 * young * sum[0], 0.5 * young * sum[1], material.shear() * sum[2]];
+        Ok(FrontIntegrals { radius, factors, j: sum[3] })
+    }
+
+    fn place(&self, r: f64, theta: f64) -> Vector<D> {
+        self.frame.position + self.frame.ahead * (r * theta.cos()) + self.frame.normal * (r * theta.sin())
+    }
+
+    fn state(&self, at: Vector<D>, sight: Vector<D>, buffer: &mut Buffer<D>) -> Result<State<D>> {
+        let (fit, shape) = buffer;
+        self.collocation.approximation.at_point(at, sight, fit, shape)?;
+        let (mut gradient, mut along) = (Matrix::<D>::zeros(), Matrix::<D>::zeros());
+        let e3: Vector<D> = self.axes.column(D - 1).into_owned();
+        for (k, &i) in shape.neighbors.iter().enumerate() {
+            let u = self.displacements[i as usize];
+            gradient += u * shape.gradients[k].transpose();
+            if D == 3 {
+                along += u * (shape.second_derivatives[k] * e3).transpose();
+            }
+        }
+        let turn = |g: Matrix<D>| self.axes.transpose() * g * self.axes;
+        let (gradient, gradient_along) = (turn(gradient), turn(along));
+        let material = &self.collocation.solid.material;
+        Ok(State {
+            gradient,
+            stress: stress(material, &gradient),
+            gradient_along,
+            stress_along: stress(material, &gradient_along),
+        })
+    }
+
+    fn area_term(&self, p: &DiscPoint, radius: f64, buffer: &mut Buffer<D>) -> Result<Integrals> {
+        let at = self.place(p.r, p.theta);
+        let state = self.state(at, at, buffer)?;
+        let is_slope = p.r > PLATEAU * radius;
+        let q = if is_slope { (radius - p.r) / ((1.0 - PLATEAU) * radius) } else { 1.0 };
+        let slope = if is_slope { -1.0 / ((1.0 - PLATEAU) * radius) } else { 0.0 };
+        let radial = Vector::<D>::from_fn(|d, _| [p.theta.cos(), p.theta.sin(), 0.0][d]);
+        let solid = &self.collocation.solid;
+        let force = self.axes.transpose() * solid.body_force.value(&SurfacePoint::inside(at));
+        let rest = |gradient: &Matrix<D>| gradient.column(0).dot(&force);
+        let energy = 0.5 * state.stress.dot(&state.gradient);
+        let mut found = [0.0; 4];
+        found[3] = -(energy * radial[0] - flux(&state.stress, &state.gradient, &radial)) * slope;
+        found[3] += q * (along(&state, &state.stress, &state.gradient) - rest(&state.gradient));
+        for mode in 0..D {
+            let gradient = auxiliary(mode, &solid.material, p.r, p.theta);
+            let stress = stress(&solid.material, &gradient);
+            let mixed = flux(&state.stress, &gradient, &radial) + flux(&stress, &state.gradient, &radial);
+            found[mode] = -(state.stress.dot(&gradient) * radial[0] - mixed) * slope;
+            found[mode] += q * (along(&state, &stress, &gradient) - rest(&gradient));
+        }
+        Ok(found.map(|v| v * p.weight))
+    }
+
+    /// What tractions on the faces add.
+    fn face_terms(&self, radius: f64) -> Result<Integrals> {
+        let mut buffer = Default::default();
+        let mut sum = [0.0; 4];
+        let solid = &self.collocation.solid;
+        for side in [1.0, -1.0] {
+            let normal = self.frame.normal * -side;
+            for (x, weight) in gauss_legendre(FACE) {
+                // r = s² takes the root out of the auxiliary fields.
+                let s = x * radius.sqrt();
+                let (r, weight) = (s * s, 2.0 * weight * s * radius.sqrt());
+                let q = ((radius - r) / ((1.0 - PLATEAU) * radius)).min(1.0);
+                let position = self.frame.position - self.frame.ahead * r;
+                let sight = position - normal * (OFF * radius);
+                let traction = solid.faces[self.crack].value(&SurfacePoint { position, normal, sight });
+                let traction = self.axes.transpose() * traction * (weight * q);
+                let state = self.state(position, sight, &mut buffer)?;
+                sum[3] -= traction.dot(&state.gradient.column(0));
+                for mode in 0..D {
+                    sum[mode] -= traction.dot(&auxiliary::<D>(mode, &solid.material, r, side * PI).column(0));
+                }
+            }
+        }
+        Ok(sum)
+    }
+}
+
+type Buffer<const D: usize> = (FitBuffer<D>, ShapeFunctions<D>);
+
+/// `σ_kα u_k,1` in the direction `radial`, of the stress of one field and the gradient of another.
+fn flux<const D: usize>(stress: &Matrix<D>, gradient: &Matrix<D>, radial: &Vector<D>) -> f64 {
+    (stress * radial).dot(&gradient.column(0))
+}
+
+/// Derivative along the front of `P_13`, mixed of the solution and a field; all of it if the field is the solution.
+///
+/// `-σ_k3,3 u_k,1 - σ_k3 u_k,13` with the last factor of each term taken from where it changes along the front.
+fn along<const D: usize>(state: &State<D>, stress: &Matrix<D>, gradient: &Matrix<D>) -> f64 {
+    if D < 3 {
+        return 0.0;
+    }
+    -state.stress_along.column(D - 1).dot(&gradient.column(0))
+        - stress.column(D - 1).dot(&state.gradient_along.column(0))
+}
+
+fn stress<const D: usize>(material: &Elasticity, gradient: &Matrix<D>) -> Matrix<D> {
+    (gradient + gradient.transpose()) * material.shear()
+        + Matrix::from_diagonal_element(material.lame() * gradient.trace())
+}
+
+/// Displacement gradient of a unit mode at a straight front.
+fn auxiliary<const D: usize>(mode: usize, material: &Elasticity, r: f64, theta: f64) -> Matrix<D> {
+    let in_plane = |mode| {
+        let (_, gradient) = tip_field(mode, material, r, theta);
+        Matrix::from_fn(|i, j| if i < 2 && j < 2 { gradient[(i, j)] } else { 0.0 })
+    };
+    match mode {
+        0 => in_plane(TipMode::Opening),
+        1 => in_plane(TipMode::Sliding),
+        _ => axis::<D>(D - 1) * out_of_plane_gradient::<D>(material, r, theta).transpose(),
+    }
+}
+
+fn is_zero<const D: usize>(field: &VectorField<D>) -> bool {
+    match field {
+        VectorField::Constant(v) => v.norm() == 0.0,
+        VectorField::Function(_) => false,
+    }
+}
+
+/// Gauss points between two radii, in both halves of the disc.
+fn ring(from: f64, to: f64) -> Vec<DiscPoint> {
+    let mut points = vec![];
+    for (x, wx) in gauss_legendre(RADIAL) {
+        let r = from + x * (to - from);
+        for (y, wy) in gauss_legendre(ANGULAR) {
+            for middle in [0.5 * PI, -0.5 * PI] {
+                let weight = wx * (to - from) * wy * PI * r;
+                points.push(DiscPoint { r, theta: middle + PI * (y - 0.5), weight });
+            }
+        }
+    }
+    points
+}

@@ -1,0 +1,123 @@
+//! Sparse rows of small dense blocks, for systems that are not symmetric.
+
+use rayon::prelude::*;
+
+/// Rows that are made, kept and multiplied together.
+pub const CHUNK: usize = 256;
+
+/// A block that joins two nodes: `block[row][column]`.
+pub type Block<const D: usize> = [[f64; D]; D];
+
+/// A square matrix of `D`×`D` blocks, stored in chunks of rows.
+#[derive(Clone, Debug, Default)]
+pub struct BlockRows<const D: usize> {
+    chunks: Vec<RowChunk<D>>,
+    n_rows: usize,
+}
+
+/// Some rows; columns ascend in each.
+#[derive(Clone, Debug)]
+pub struct RowChunk<const D: usize> {
+    starts: Vec<u32>,
+    columns: Vec<u32>,
+    blocks: Vec<Block<D>>,
+}
+
+impl<const D: usize> Default for RowChunk<D> {
+    fn default() -> Self {
+        Self { starts: vec![0], columns: vec![], blocks: vec![] }
+    }
+}
+
+impl<const D: usize> RowChunk<D> {
+    /// Room for `n` blocks.
+    pub fn with_capacity(n: usize) -> Self {
+        Self { starts: vec![0], columns: Vec::with_capacity(n), blocks: Vec::with_capacity(n) }
+    }
+
+    /// Adds a row; entries with equal columns, which must be neighbors, are added up.
+    pub fn push(&mut self, entries: &[(u32, Block<D>)]) {
+        let start = self.columns.len();
+        for (column, block) in entries {
+            if self.columns.len() > start && self.columns.last() == Some(column) {
+                let last = self.blocks.len() - 1;
+                (0..D).for_each(|a| (0..D).for_each(|b| self.blocks[last][a][b] += block[a][b]));
+            } else {
+                self.columns.push(*column);
+                self.blocks.push(*block);
+            }
+        }
+        self.starts.push(self.columns.len() as u32);
+    }
+
+    fn n_rows(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn row(&self, i: usize) -> (&[u32], &[Block<D>]) {
+        let range = self.starts[i] as usize..self.starts[i + 1] as usize;
+        (&self.columns[range.clone()], &self.blocks[range])
+    }
+}
+
+impl<const D: usize> BlockRows<D> {
+    /// Joins chunks; all but the last hold [`CHUNK`] rows.
+    pub fn new(chunks: Vec<RowChunk<D>>) -> Self {
+        let n_rows = chunks.iter().map(RowChunk::n_rows).sum();
+        debug_assert!(chunks.iter().rev().skip(1).all(|c| c.n_rows() == CHUNK));
+        Self { chunks, n_rows }
+    }
+
+    /// Number of block rows.
+    pub fn n_rows(&self) -> usize {
+        self.n_rows
+    }
+
+    /// Number of blocks.
+    pub fn n_blocks(&self) -> usize {
+        self.chunks.iter().map(|c| c.columns.len()).sum()
+    }
+
+    /// Columns and blocks of a row.
+    #[inline]
+    pub fn row(&self, i: usize) -> (&[u32], &[Block<D>]) {
+        self.chunks[i / CHUNK].row(i % CHUNK)
+    }
+
+    /// `y = A x`.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        y.par_chunks_mut(CHUNK * D).zip(&self.chunks).for_each(|(y, chunk)| {
+            for (i, y) in y.chunks_exact_mut(D).enumerate() {
+                let (columns, blocks) = chunk.row(i);
+                let mut sum = [0.0; D];
+                for (&j, block) in columns.iter().zip(blocks) {
+                    let x = &x[j as usize * D..(j as usize + 1) * D];
+                    for a in 0..D {
+                        for b in 0..D {
+                            sum[a] += block[a][b] * x[b];
+                        }
+                    }
+                }
+                y.copy_from_slice(&sum);
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn product_and_doubled_entries() {
+        let mut chunk = RowChunk::<2>::default();
+        let block = [[1.0, 2.0], [3.0, 4.0]];
+        chunk.push(&[(0, block), (1, block), (1, block)]);
+        chunk.push(&[(1, block)]);
+        let matrix = BlockRows::new(vec![chunk]);
+        let mut y = [0.0; 4];
+        matrix.multiply(&[1.0, 0.0, 0.0, 1.0], &mut y);
+        assert_eq!(y, [5.0, 11.0, 2.0, 4.0]);
+        assert_eq!(matrix.n_blocks(), 3);
+    }
+}

@@ -1,0 +1,288 @@
+//! Solution of the equations of collocation: direct for few nodes, two-level preconditioned IDR(4) for many.
+
+use super::aggregates::Aggregates;
+use super::block_rows::BlockRows;
+use super::coarse_level::CoarseLevel;
+use super::collocation::{Collocation, CollocationSystem};
+use super::collocation_settings::CollocationSolver;
+use super::incomplete_factor::IncompleteFactor;
+use super::krylov::{self, Limits, LinearMap, Progress};
+use super::sparse_lu::{ScalarRows, SparseLu};
+use crate::error::{Error, Result};
+use crate::math::symmetric_eigen::symmetric_eigen;
+use crate::math::{Matrix, Vector, axis};
+use crate::model::RigidMotion;
+use std::ops::Range;
+
+/// Up to this many nodes the direct solver is faster.
+const DIRECT_UP_TO: [usize; 2] = [12_000, 1_500];
+/// Relative residual at which iterations stop.
+const TARGET: f64 = 1e-9;
+/// Relative residual that is accepted.
+const ALLOWED: f64 = 1e-8;
+/// Multiplications by the matrix after which a method gives up.
+const MOST_ITERATIONS: usize = 400;
+/// IDR starts again from where it stood, since its own residual drifts from the true one.
+const STARTS: usize = 3;
+/// Vectors of GMRES, the last resort.
+const RESTART: usize = 80;
+/// Least and greatest number of nodes in a group of the coarse level, and groups wanted in between.
+const GROUP_SIZES: [usize; 2] = [150, 600];
+const GROUPS: usize = 500;
+/// Rigid motions are held if what fixes them is above this share of what fixes the firmest.
+const HELD: f64 = 1e-10;
+/// Above this ratio the preconditioner was seen to fail.
+const LARGEST_POISSON: f64 = 0.45;
+
+/// Displacements with what it took to find them.
+#[derive(Clone, Debug)]
+pub struct CollocationSolution<const D: usize> {
+    /// Displacements of the nodes [length].
+    pub displacements: Vec<Vector<D>>,
+    /// How they were found.
+    pub effort: SolverEffort,
+}
+
+/// What a solution took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverEffort {
+    /// The method.
+    pub method: &'static str,
+    /// Multiplications by the matrix.
+    pub iterations: usize,
+    /// True relative residual.
+    pub residual: f64,
+    /// Blocks of the matrix.
+    pub n_blocks: usize,
+    /// Blocks of the preconditioner.
+    pub n_factor_blocks: usize,
+    /// Unknowns of the coarse level.
+    pub n_coarse: usize,
+}
+
+impl<const D: usize> Collocation<D> {
+    /// One step of Newton's method from rest, which is all that linear elasticity needs [C3D, Eqs. 41, 42].
+    ///
+    /// # Errors
+    /// [`Error::FreeRigidMotion`] if the supports leave one and the model does not remove it,
+    /// [`Error::NotConverged`] or [`Error::Factorization`] if the system cannot be solved.
+    pub fn solve(&self, system: &CollocationSystem<D>) -> Result<CollocationSolution<D>> {
+        let border = self.free_motions(&system.fixed)?;
+        let n = self.cloud().len();
+        let is_direct = match self.settings.solver {
+            CollocationSolver::Automatic => n <= DIRECT_UP_TO[D - 2],
+            CollocationSolver::Direct => true,
+            CollocationSolver::Iterative => false,
+        };
+        let (x, effort) =
+            if is_direct { solve_direct(system, &border)? } else { self.solve_iteratively(system, &border)? };
+        let displacements = x.chunks_exact(D).map(Vector::from_column_slice).collect();
+        Ok(CollocationSolution { displacements, effort })
+    }
+
+    /// Unit vectors of the rigid motions that nothing holds.
+    fn free_motions(&self, fixed: &[Matrix<D>]) -> Result<Vec<Vec<f64>>> {
+        let motions = rigid_motions(&self.cloud().positions);
+        let held = |a: &Vec<f64>, b: &Vec<f64>| -> f64 {
+            let pairs = a.chunks_exact(D).zip(b.chunks_exact(D)).zip(fixed);
+            pairs
+                .map(|((a, b), f)| (f * Vector::<D>::from_column_slice(b)).dot(&Vector::<D>::from_column_slice(a)))
+                .sum()
+        };
+        let gram: Vec<Vec<f64>> = motions.iter().map(|a| motions.iter().map(|b| held(a, b)).collect()).collect();
+        let (values, vectors) = symmetric_eigen(&gram);
+        let firmest = values.iter().fold(0.0f64, |m, v| m.max(*v));
+        let free: Vec<Vec<f64>> = values
+            .iter()
+            .zip(vectors)
+            .filter(|(v, _)| **v <= HELD * firmest)
+            .map(|(_, vector)| {
+                let mut motion = vec![0.0; motions[0].len()];
+                vector.iter().zip(&motions).for_each(|(c, m)| krylov::add(&mut motion, *c, m));
+                motion
+            })
+            .collect();
+        match self.solid.rigid_motion {
+            RigidMotion::Supported if !free.is_empty() => {
+                let motion = format!("{} of {} rigid motions", free.len(), motions.len());
+                Err(Error::FreeRigidMotion { motion, component: None })
+            }
+            RigidMotion::Supported | RigidMotion::MeanIsZero => Ok(free),
+        }
+    }
+
+    fn solve_iteratively(
+        &self,
+        system: &CollocationSystem<D>,
+        border: &[Vec<f64>],
+    ) -> Result<(Vec<f64>, SolverEffort)> {
+        let n = self.cloud().len();
+        let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&system.tangent, border, x, y);
+        let size = (n / GROUPS).clamp(GROUP_SIZES[0], GROUP_SIZES[1]);
+        let positions = &self.cloud().positions;
+        let (fine, coarse) = rayon::join(
+            || IncompleteFactor::new(&system.tangent, parts(n)),
+            || {
+                let groups = Aggregates::new(positions, &system.tangent, &system.fixed, size);
+                CoarseLevel::new(&system.tangent, positions, &system.fixed, groups, border)
+            },
+        );
+        let coarse = coarse?;
+        let preconditioner = TwoLevel { matrix: &matrix, coarse: &coarse, fine: &fine };
+        let mut x = vec![0.0; n * D];
+        let (method, progress) = iterate(&matrix, &preconditioner, &system.load, &mut x);
+        if !(progress.residual <= ALLOWED) {
+            let poisson = self.solid.material.poisson;
+            let hint = if poisson > LARGEST_POISSON {
+                format!("; Poisson's ratio {poisson} is above {LARGEST_POISSON}, the most that this solver is made for")
+            } else {
+                "; look for places where nodes are badly spread, or use fewer nodes with the direct solver".into()
+            };
+            return Err(Error::NotConverged {
+                method: method.into(),
+                iterations: progress.iterations,
+                n_unknowns: n * D,
+                residual: progress.residual,
+                allowed: ALLOWED,
+                hint,
+            });
+        }
+        let effort = SolverEffort {
+            method,
+            iterations: progress.iterations,
+            residual: progress.residual,
+            n_blocks: system.tangent.n_blocks(),
+            n_factor_blocks: fine.n_blocks(),
+            n_coarse: coarse.n_unknowns(),
+        };
+        Ok((x, effort))
+    }
+}
+
+/// IDR(4), and GMRES if it fails; the residual told is the true one.
+fn iterate(
+    matrix: &dyn LinearMap,
+    preconditioner: &dyn LinearMap,
+    right: &[f64],
+    x: &mut [f64],
+) -> (&'static str, Progress) {
+    let mut r = vec![0.0; right.len()];
+    let size = krylov::norm(right);
+    let mut total = Progress { iterations: 0, residual: 0.0 };
+    if size == 0.0 {
+        return ("IDR(4)", total);
+    }
+    let mut check = |x: &[f64], total: &mut Progress, iterations: usize| {
+        krylov::residual(matrix, right, x, &mut r);
+        total.iterations += iterations;
+        total.residual = krylov::norm(&r) / size;
+        total.residual
+    };
+    let limits = Limits { target: TARGET, iterations: MOST_ITERATIONS };
+    for _ in 0..STARTS {
+        let found = krylov::idr(matrix, preconditioner, right, x, limits);
+        let residual = check(x, &mut total, found.iterations);
+        if residual <= ALLOWED {
+            return ("IDR(4)", total);
+        }
+        if !residual.is_finite() || total.iterations >= MOST_ITERATIONS {
+            break;
+        }
+    }
+    if !total.residual.is_finite() || total.residual > 1.0 {
+        x.fill(0.0);
+    }
+    let found = krylov::gmres(matrix, preconditioner, right, x, RESTART, limits);
+    check(x, &mut total, found.iterations);
+    ("GMRES", total)
+}
+
+/// Coarse correction first, then the incomplete factors on what is left.
+struct TwoLevel<'a, const D: usize> {
+    matrix: &'a dyn LinearMap,
+    coarse: &'a CoarseLevel<D>,
+    fine: &'a IncompleteFactor<D>,
+}
+
+impl<const D: usize> LinearMap for TwoLevel<'_, D> {
+    fn apply(&self, r: &[f64], z: &mut [f64]) {
+        let (mut rest, mut fine) = (vec![0.0; r.len()], vec![0.0; r.len()]);
+        self.coarse.solve(r, z);
+        krylov::residual(self.matrix, r, z, &mut rest);
+        self.fine.solve(&rest, &mut fine);
+        krylov::add(z, 1.0, &fine);
+    }
+}
+
+/// Ranges of rows that are factored each by itself.
+fn parts(n: usize) -> Vec<Range<usize>> {
+    let n_parts = n.div_ceil(PART_NODES).max(1);
+    (0..n_parts).map(|p| p * n / n_parts..(p + 1) * n / n_parts).collect()
+}
+
+/// Most nodes in a part.
+const PART_NODES: usize = 1_000_000;
+
+/// `y = (A + Σ b bᵀ) x`.
+fn multiply_bordered<const D: usize>(matrix: &BlockRows<D>, border: &[Vec<f64>], x: &[f64], y: &mut [f64]) {
+    matrix.multiply(x, y);
+    for b in border {
+        krylov::add(y, krylov::dot(b, x), b);
+    }
+}
+
+fn solve_direct<const D: usize>(
+    system: &CollocationSystem<D>,
+    border: &[Vec<f64>],
+) -> Result<(Vec<f64>, SolverEffort)> {
+    let right = &system.load;
+    let factor = SparseLu::new(ScalarRows::bordered(&system.tangent, border))?;
+    let (mut x, mut r) = (vec![0.0; right.len()], vec![0.0; right.len()]);
+    let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&system.tangent, border, x, y);
+    // Two steps of refinement: the pivots are chosen for few entries too.
+    for _ in 0..3 {
+        krylov::residual(&matrix, right, &x, &mut r);
+        let mut step = r.clone();
+        step.resize(right.len() + border.len(), 0.0);
+        factor.solve_in_place(&mut step);
+        step.truncate(right.len());
+        krylov::add(&mut x, 1.0, &step);
+    }
+    krylov::residual(&matrix, right, &x, &mut r);
+    let residual = krylov::norm(&r) / krylov::norm(right).max(f64::MIN_POSITIVE);
+    if !(residual <= ALLOWED) {
+        return Err(Error::Residual { residual, allowed: ALLOWED });
+    }
+    let n_blocks = system.tangent.n_blocks();
+    let effort =
+        SolverEffort { method: "sparse LU", iterations: 3, residual, n_blocks, n_factor_blocks: 0, n_coarse: 0 };
+    Ok((x, effort))
+}
+
+/// Translations and rotations about the middle, as orthogonal unit vectors in the plane and nearly so in space.
+fn rigid_motions<const D: usize>(positions: &[Vector<D>]) -> Vec<Vec<f64>> {
+    let center = positions.iter().fold(Vector::<D>::zeros(), |s, p| s + p) / positions.len() as f64;
+    let mut motions: Vec<Vec<f64>> = vec![];
+    let mut add = |motion: &dyn Fn(&Vector<D>) -> Vector<D>| {
+        let mut v: Vec<f64> =
+            positions.iter().flat_map(|p| motion(&(p - center)).iter().copied().collect::<Vec<_>>()).collect();
+        for m in &motions {
+            let along = krylov::dot(m, &v);
+            krylov::add(&mut v, -along, m);
+        }
+        let length = krylov::norm(&v);
+        if length > 0.0 {
+            v.iter_mut().for_each(|x| *x /= length);
+            motions.push(v);
+        }
+    };
+    for d in 0..D {
+        add(&|_| axis(d));
+    }
+    for a in 0..D {
+        for b in 0..a {
+            add(&|p| axis::<D>(a) * p[b] - axis::<D>(b) * p[a]);
+        }
+    }
+    motions
+}
