@@ -1,11 +1,18 @@
-//! Cracks as plain geometry: in the plane a path with one or two tips.
+//! Cracks as plain geometry: in the plane a path with one or two tips, in space a surface with fronts.
 //!
+//! Reading order: [`path`], [`tip`], [`meetings`]; in space [`shape`], [`surface`], [`front`].
 //! Knows no nodes, no materials and no loads.
 
+pub mod front;
 pub mod meetings;
 pub mod path;
+pub mod shape;
+pub mod surface;
 pub mod tip;
 
+pub use front::{CrackFront, FrontPoint};
 pub use meetings::Meeting;
 pub use path::{CrackPath, End, EndKind};
+pub use shape::{CrackDefect, CrackShape};
+pub use surface::{CrackSurface, MouthPiece, Mouths};
 pub use tip::{TipFrame, TipId};

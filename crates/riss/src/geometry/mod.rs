@@ -1,7 +1,7 @@
 //! Points, curves, boxes and searches.
 //!
-//! Reading order: [`predicates`], [`aabb`], [`tree`], [`curve`], [`polygon`], [`obstacles`], [`geodesics`]. Has never
-//! heard of cracks, nodes or loads.
+//! Reading order: [`predicates`], [`aabb`], [`tree`], [`curve`], [`polygon`], [`obstacles`], [`geodesics`]; in space
+//! [`triangle`], [`surface`]. Has never heard of cracks, nodes or loads.
 
 pub mod aabb;
 pub mod curve;
@@ -10,4 +10,6 @@ pub mod obstacles;
 pub mod path_distance;
 pub mod polygon;
 pub mod predicates;
+pub mod surface;
 pub mod tree;
+pub mod triangle;

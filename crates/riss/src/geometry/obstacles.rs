@@ -1,9 +1,12 @@
-//! Opaque segments: what sight lines cannot pass.
+//! Opaque segments and triangles: what sight lines cannot pass.
 
 use super::aabb::Aabb;
 use super::predicates::segment_is_cut;
+use super::surface::Surface;
 use super::tree::BoxTree;
-use crate::math::{Vector, Vector2};
+use super::triangle::{self, Triangle, cuts_segment};
+use crate::math::{Vector, Vector2, Vector3};
+use rayon::prelude::*;
 
 /// Opaque segments with a tree over them.
 #[derive(Clone, Debug)]
@@ -59,5 +62,65 @@ pub trait Opaque<const D: usize>: Sync {
 impl Opaque<2> for Obstacles {
     fn visible(&self, from: Vector2, to: Vector2) -> bool {
         Obstacles::visible(self, from, to)
+    }
+}
+
+/// Opaque triangles with a tree over them.
+#[derive(Clone, Debug)]
+pub struct OpaqueTriangles {
+    triangles: Vec<Triangle>,
+    tree: BoxTree<3>,
+}
+
+impl OpaqueTriangles {
+    /// Makes the tree.
+    pub fn new(triangles: Vec<Triangle>) -> Self {
+        let boxes: Vec<_> = triangles.iter().map(|t| triangle::bounds(*t)).collect();
+        Self { triangles, tree: BoxTree::new(&boxes) }
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+}
+
+impl Opaque<3> for OpaqueTriangles {
+    fn visible(&self, from: Vector3, to: Vector3) -> bool {
+        let mut clear = true;
+        self.tree.visit(&Aabb::of_points([from, to]), |i| {
+            clear = clear && !cuts_segment(self.triangles[i as usize], from, to);
+        });
+        clear
+    }
+}
+
+/// The triangles of a closed surface that can stand between two points of its inside: those that have some of the
+/// surface in front of them.
+pub fn opaque_part(surface: &Surface) -> Vec<Triangle> {
+    let tolerance = 1e-9 * surface.bounds().size().norm();
+    let rises = |t: &u32| {
+        let (a, normal) = (surface.corners(*t)[0], surface.normals()[*t as usize]);
+        surface.vertices().iter().any(|p| (p - a).dot(&normal) > tolerance)
+    };
+    (0..surface.triangles().len() as u32).into_par_iter().filter(rises).map(|t| surface.corners(t)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::surface::makers::{ball, cuboid};
+    use super::*;
+
+    #[test]
+    fn only_what_is_not_convex_is_opaque() {
+        let v = Vector3::new;
+        let mut mesh = cuboid(Aabb { lower: v(0.0, 0.0, 0.0), upper: v(4.0, 4.0, 4.0) });
+        assert!(opaque_part(&Surface::closed(mesh.clone(), 0.5).unwrap()).is_empty());
+        mesh.append(&ball(v(2.0, 2.0, 2.0), 1.0, "void"));
+        let obstacles = OpaqueTriangles::new(opaque_part(&Surface::closed(mesh, 0.5).unwrap()));
+        assert_eq!(obstacles.triangles().len(), 20 * 256);
+        assert!(!obstacles.visible(v(0.5, 2.0, 2.0), v(3.5, 2.0, 2.0)));
+        assert!(obstacles.visible(v(0.5, 3.01, 2.0), v(3.5, 3.01, 2.0)));
+        assert!(!obstacles.visible(v(0.5, 2.9, 2.0), v(3.5, 2.9, 2.0)));
     }
 }

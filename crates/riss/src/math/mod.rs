@@ -12,6 +12,8 @@ pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
 pub type Matrix<const D: usize> = nalgebra::SMatrix<f64, D, D>;
 /// A point or vector in the plane.
 pub type Vector2 = Vector<2>;
+/// A point or vector in space.
+pub type Vector3 = Vector<3>;
 /// A tensor in the plane.
 pub type Matrix2 = Matrix<2>;
 

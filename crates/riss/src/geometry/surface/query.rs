@@ -1,0 +1,93 @@
+//! Distances to a surface, and inside or outside.
+
+use super::Surface;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::triangle::{Feature, closest, cuts_segment};
+use crate::math::Vector3;
+
+/// The point of a surface that is closest to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// Its triangle.
+    pub triangle: u32,
+    /// Where on the triangle.
+    pub feature: Feature,
+    /// The point.
+    pub position: Vector3,
+    /// Distance between the two [length].
+    pub distance: f64,
+}
+
+impl Surface {
+    /// The closest point within a distance, if there is one.
+    pub fn closest_within(&self, p: Vector3, limit: f64) -> Option<Foot> {
+        self.closest_where(p, limit, |_| true)
+    }
+
+    /// The same among triangles that `accepts` does not refuse.
+    pub fn closest_where(&self, p: Vector3, limit: f64, accepts: impl Fn(u32) -> bool) -> Option<Foot> {
+        let mut best: Option<Foot> = None;
+        self.tree.visit(&Aabb::around(p, Vector3::repeat(limit)), |t| {
+            if !accepts(t) {
+                return;
+            }
+            let (position, feature) = closest(self.corners(t), p);
+            let distance = (position - p).norm();
+            let is_nearer = best.is_none_or(|b| distance < b.distance || (distance == b.distance && t < b.triangle));
+            if distance <= limit && is_nearer {
+                best = Some(Foot { triangle: t, feature, position, distance });
+            }
+        });
+        best
+    }
+
+    /// The closest point.
+    pub fn closest(&self, p: Vector3) -> Foot {
+        let bounds = self.bounds();
+        let outside = (bounds.lower - p).sup(&(p - bounds.upper)).sup(&Vector3::zeros()).norm();
+        let mut limit = outside + 0.02 * bounds.size().norm();
+        loop {
+            if let Some(foot) = self.closest_within(p, limit) {
+                return foot;
+            }
+            limit *= 2.0;
+        }
+    }
+
+    /// Least box around the surface.
+    pub fn bounds(&self) -> Aabb<3> {
+        self.bounds
+    }
+
+    /// Whether a point lies on the inner side of a closed surface, of which `foot` is the point closest to it: by the
+    /// normal there, weighted by angles on edges and corners [Baerentzen2005].
+    pub fn is_behind(&self, p: Vector3, foot: &Foot) -> bool {
+        let t = foot.triangle as usize;
+        let normal = match foot.feature {
+            Feature::Face => self.normals[t],
+            Feature::Edge(k) => {
+                self.normals[t] + self.neighbors[t][k].map_or(Vector3::zeros(), |o| self.normals[o as usize])
+            }
+            Feature::Corner(k) => self.vertex_normals[self.triangles[t][k] as usize],
+        };
+        (p - foot.position).dot(&normal) < 0.0
+    }
+
+    /// Whether a point lies inside a closed surface.
+    pub fn contains(&self, p: Vector3) -> bool {
+        self.bounds().contains(&p) && self.is_behind(p, &self.closest(p))
+    }
+
+    /// Distance to a closed surface, negative inside [length].
+    pub fn signed_distance(&self, p: Vector3) -> f64 {
+        let foot = self.closest(p);
+        if self.is_behind(p, &foot) { -foot.distance } else { foot.distance }
+    }
+
+    /// Whether a triangle cuts the segment from `p` to `q`; touching at an end does not cut.
+    pub fn cuts(&self, p: Vector3, q: Vector3) -> bool {
+        let mut is_cut = false;
+        self.tree.visit(&Aabb::of_points([p, q]), |t| is_cut = is_cut || cuts_segment(self.corners(t), p, q));
+        is_cut
+    }
+}
