@@ -92,6 +92,7 @@ pub(super) fn solve_step(
         refinements,
         fields,
         nodes: node_records.collect(),
+        extra_parameters: solution.parameters[nodes.len()..].to_vec(),
         integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
         warnings: warnings.list,
     })

@@ -303,6 +303,8 @@ pub struct StaticResult {
     pub fields: Fields,
     /// Positions of the nodes.
     pub nodes: Vec<NodeRecord>,
+    /// Parameters of the additional functions of enriched nodes [length].
+    pub extra_parameters: Vec<Vector2>,
     /// Integration points: position and integration weight.
     pub integration_points: Vec<(Vector2, f64)>,
     /// All warnings, in order.
@@ -323,6 +325,7 @@ impl StaticResult {
             refinements: vec![],
             fields: Fields::default(),
             nodes: vec![],
+            extra_parameters: vec![],
             integration_points: vec![],
             warnings: vec![],
         }

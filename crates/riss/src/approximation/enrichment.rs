@@ -2,6 +2,7 @@
 
 use super::detour::Jet;
 use super::discontinuity::through_void;
+use super::partition_of_unity::{ExtraFunctions, ExtraRegion};
 use super::settings::{EnrichmentKind, EnrichmentSettings, Ramp};
 use super::tip_functions::{LARGEST_TURN, MOST_FUNCTIONS, TipCoordinates, TipFunctions};
 use crate::crack::{CrackPath, End, EndKind, TipId};
@@ -32,8 +33,18 @@ const CORE: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub struct Enrichment {
     functions: TipFunctions,
+    form: Form,
     ramp: Ramp,
     regions: Vec<Region>,
+}
+
+/// How the functions enter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    /// In the basis [EFG, section 5.3].
+    Intrinsic,
+    /// Times the shape functions of nodes [EFG, section 5.2].
+    Extrinsic,
 }
 
 /// A disk around a tip.
@@ -42,6 +53,8 @@ struct Region {
     coordinates: TipCoordinates,
     /// Radius up to which the basis is enriched in full, and from which it is plain [length].
     radii: [f64; 2],
+    /// Distance from which on the functions jump where no crack is [length].
+    clear: f64,
     /// Values of the functions at nodes that may reach into the region.
     values: FxHashMap<u32, [f64; MOST_FUNCTIONS]>,
 }
@@ -68,14 +81,17 @@ pub(super) struct Place {
 impl Enrichment {
     /// The regions of a model, and a remark on each that had to be made smaller than asked for.
     pub fn of_model(model: &Model, settings: &EnrichmentSettings) -> (Option<Self>, Vec<String>) {
-        let functions = match settings.kind {
+        let (functions, form) = match settings.kind {
             EnrichmentKind::None => return (None, vec![]),
-            EnrichmentKind::IntrinsicFull => TipFunctions::Full,
-            EnrichmentKind::IntrinsicRadial => TipFunctions::Radial,
+            EnrichmentKind::IntrinsicFull => (TipFunctions::Full, Form::Intrinsic),
+            EnrichmentKind::IntrinsicRadial => (TipFunctions::Radial, Form::Intrinsic),
+            EnrichmentKind::ExtrinsicFull => (TipFunctions::Full, Form::Extrinsic),
+            EnrichmentKind::ExtrinsicRadial => (TipFunctions::Radial, Form::Extrinsic),
         };
         let (mut regions, mut notes) = (vec![], vec![]);
         for (id, frame) in model.tips() {
-            let limit = largest_region(model, id);
+            let clear = clear_radius(model, id);
+            let limit = half_way(model, id).min(CLEARANCE * clear);
             let free = free_radius(model, id.crack, frame.position);
             let sharp = first_sharp_kink(&model.cracks[id.crack], id.end);
             let wanted = settings.r2.unwrap_or(sharp.min(OUTER_SHARE * free));
@@ -87,10 +103,14 @@ impl Enrichment {
                 ));
             }
             let inner = settings.r1.unwrap_or(INNER_SHARE * outer).min(outer);
-            let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, CUT_REACH * outer, 0.0);
-            regions.push(Region { coordinates, radii: [inner, outer], values: FxHashMap::default() });
+            let reach = match form {
+                Form::Intrinsic => CUT_REACH * outer,
+                Form::Extrinsic => clear,
+            };
+            let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, reach, 0.0);
+            regions.push(Region { coordinates, radii: [inner, outer], clear, values: FxHashMap::default() });
         }
-        ((!regions.is_empty()).then_some(Self { functions, ramp: settings.ramp, regions }), notes)
+        ((!regions.is_empty()).then_some(Self { functions, form, ramp: settings.ramp, regions }), notes)
     }
 
     /// The functions.
@@ -129,10 +149,26 @@ impl Enrichment {
         }
     }
 
-    /// Looks up which regions matter to points in a box.
+    /// The functions that enriched nodes have besides their shape functions; none if the basis is enriched.
+    ///
+    /// Call it after [`Self::visit_nodes`].
+    pub(super) fn extra_functions(&self, nodes: &Nodes<2>) -> Option<ExtraFunctions> {
+        let region = |r: &Region| ExtraRegion { coordinates: r.coordinates.clone(), outer: r.radii[1], clear: r.clear };
+        match self.form {
+            Form::Intrinsic => None,
+            Form::Extrinsic => {
+                Some(ExtraFunctions::new(self.functions, self.regions.iter().map(region).collect(), nodes))
+            }
+        }
+    }
+
+    /// Looks up in which regions the basis is enriched at points in a box.
     pub(super) fn survey(&self, bounds: &Aabb<2>, buffer: &mut EnrichmentBuffer) {
         buffer.near.clear();
         buffer.loaded = None;
+        if self.form == Form::Extrinsic {
+            return;
+        }
         for (i, region) in self.regions.iter().enumerate() {
             let reach = Aabb::around(region.coordinates.tip(), Vector2::repeat(region.radii[1]));
             if reach.intersects(bounds) {
@@ -238,13 +274,17 @@ impl Ramp {
     }
 }
 
-/// Radius of the largest disk around a tip in which its functions jump across its own crack only, and which leaves
-/// the other tips half of the way [length].
-fn largest_region(model: &Model, id: TipId) -> f64 {
+/// Half of the way from a tip to the nearest other one [length].
+fn half_way(model: &Model, id: TipId) -> f64 {
+    let tip = model.cracks[id.crack].end_position(id.end);
+    let others = model.tips().into_iter().map(|(_, frame)| frame.position).filter(|p| *p != tip);
+    others.map(|p| SHARED * (p - tip).norm()).fold(f64::INFINITY, f64::min)
+}
+
+/// Radius of the largest disk around a tip in which its functions jump across its own crack only [length].
+fn clear_radius(model: &Model, id: TipId) -> f64 {
     let crack = &model.cracks[id.crack];
     let tip = crack.end_position(id.end);
-    let others = model.tips().into_iter().map(|(_, frame)| frame.position).filter(|p| *p != tip);
-    let shared = others.map(|p| SHARED * (p - tip).norm()).fold(f64::INFINITY, f64::min);
     let far = match id.end {
         End::Start => End::End,
         End::End => End::Start,
@@ -258,7 +298,7 @@ fn largest_region(model: &Model, id: TipId) -> f64 {
             (again - tip).norm()
         }
     };
-    shared.min(CLEARANCE * leaves.min(first_fold(crack, id.end)))
+    leaves.min(first_fold(crack, id.end))
 }
 
 /// Distance from a tip to the first kink around which its functions cannot be mapped: one that turns too far, or that

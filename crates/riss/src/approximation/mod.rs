@@ -2,7 +2,7 @@
 //!
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
 //! from the [`weight_function`] of each visible neighbor and the fit in [`mls`], near tips with the functions of an
-//! [`enrichment`].
+//! [`enrichment`]: in the basis, or as further unknowns (`partition_of_unity`).
 
 mod detour;
 pub mod discontinuity;
@@ -11,6 +11,7 @@ pub mod enrichment;
 mod fade;
 pub mod mls;
 pub mod moving_least_squares;
+mod partition_of_unity;
 pub mod settings;
 mod sight;
 pub mod tip_functions;
@@ -28,7 +29,8 @@ pub use settings::{
 /// Shape functions at one point. A buffer that is refilled, one per thread.
 #[derive(Clone, Debug, Default)]
 pub struct ShapeFunctions<const D: usize> {
-    /// Nodes whose shape functions are not zero.
+    /// Nodes whose shape functions are not zero, ascending; then, from the number of nodes on, the additional functions of
+    /// enriched nodes.
     pub neighbors: Vec<u32>,
     /// Values.
     pub values: Vec<f64>,

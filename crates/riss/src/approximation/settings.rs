@@ -57,7 +57,11 @@ impl ApproximationSettings {
             SupportShape::Circular => self.smoothing,
             SupportShape::Rectangular => SmoothingSettings::VISIBILITY,
         };
-        if self.enrichment.kind == EnrichmentKind::IntrinsicFull && given.cracks.is_none() {
+        let is_full = match self.enrichment.kind {
+            EnrichmentKind::IntrinsicFull | EnrichmentKind::ExtrinsicFull => true,
+            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial | EnrichmentKind::ExtrinsicRadial => false,
+        };
+        if is_full && given.cracks.is_none() {
             given.cracks = Some(CrackSmoothing::Diffraction { lambda: 1.0 });
         }
         SmoothingSettings { cracks: Some(given.cracks()), holes: Some(given.holes()) }
@@ -143,7 +147,7 @@ pub enum HoleSmoothing {
 pub struct EnrichmentSettings {
     /// What the basis holds besides polynomials.
     pub kind: EnrichmentKind,
-    /// How enriched and plain shape functions are joined (Eq. 54).
+    /// How enriched and plain shape functions are joined (Eq. 54); intrinsic kinds only.
     pub ramp: Ramp,
     /// Distance from a tip up to which only enriched shape functions are used [length]; half of `r2` if not given.
     #[schemars(range(min = 0.0))]
@@ -165,7 +169,10 @@ impl EnrichmentSettings {
         self.dilation.unwrap_or(match self.kind {
             EnrichmentKind::IntrinsicFull if is_regular => 3.2,
             EnrichmentKind::IntrinsicFull => 2.75,
-            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => 0.0,
+            EnrichmentKind::None
+            | EnrichmentKind::IntrinsicRadial
+            | EnrichmentKind::ExtrinsicFull
+            | EnrichmentKind::ExtrinsicRadial => 0.0,
         })
     }
 }
@@ -181,6 +188,11 @@ pub enum EnrichmentKind {
     IntrinsicFull,
     /// The root of the distance from the tip, in the basis (5.3.2): cheaper, less accurate.
     IntrinsicRadial,
+    /// The four functions times the shape functions of the nodes nearer to a tip than `r2`, as further unknowns (5.2);
+    /// there is no ramp, and `r1` has no meaning.
+    ExtrinsicFull,
+    /// The root of the distance times the shape functions of the nodes nearer to a tip than `r2` (5.2).
+    ExtrinsicRadial,
 }
 
 /// Ramp between enriched and plain shape functions [EFG, Eq. 54].

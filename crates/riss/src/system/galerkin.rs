@@ -28,7 +28,7 @@ pub struct LinearSystem {
 
 /// Assembles cells, boundary and crack face loads, springs and supports.
 pub fn assemble(model: &Model, discrete: &Discretization, method: &ConstraintMethod) -> Result<LinearSystem> {
-    let n = discrete.n_nodes();
+    let n = discrete.n_functions();
     let extra = constraints::point_lists(model, discrete)?;
     let lists = [&discrete.cell_nodes, &discrete.boundary_nodes, &extra];
     let mut system = LinearSystem { matrix: BlockMatrix::of_pattern(n, &lists), load: vec![0.0; 2 * n] };

@@ -20,7 +20,7 @@ pub const UNBALANCED: f64 = 1e-6;
 /// Nodal parameters and what belongs to them. Not nodal values: moving least squares do not interpolate.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
-    /// Nodal parameters of the displacement [length].
+    /// Nodal parameters of the displacement, then those of additional functions [length].
     pub parameters: Vec<Vector2>,
     /// Multipliers of boundary supports, per thickness, row by row.
     pub multipliers: Vec<f64>,
@@ -56,7 +56,7 @@ pub fn solve(
         system.matrix.add_diagonal(2 * node + 1, stiffness);
     }
     let positions = &discrete.approximation.nodes().positions;
-    let order = nested_dissection(positions, &system.matrix);
+    let order = nested_dissection(&discrete.approximation.function_positions(), &system.matrix);
     let mean = match model.rigid_motion {
         RigidMotion::Supported => None,
         RigidMotion::MeanIsZero => Some(MeanMotion::new(discrete)?),

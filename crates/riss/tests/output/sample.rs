@@ -52,6 +52,7 @@ pub fn result(n: usize) -> StaticResult {
             k_error: Some(0.125),
             factors: vec![[FIELD.k1, f64::INFINITY]],
         }],
+        extra_parameters: vec![],
         nodes: fields
             .positions
             .iter()
