@@ -47,8 +47,10 @@ fn grid(nx: usize, ny: usize, kind: EnrichmentKind) -> Settings {
     settings.nodes.layout = Layout::Structured(Structured { nx, ny });
     settings.approximation.enrichment.kind = kind;
     settings.approximation.smoothing.cracks = Some(match kind {
-        EnrichmentKind::IntrinsicFull => CrackSmoothing::Diffraction { lambda: 1.0 },
-        EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => CrackSmoothing::Visibility,
+        EnrichmentKind::IntrinsicFull | EnrichmentKind::ExtrinsicFull => CrackSmoothing::Diffraction { lambda: 1.0 },
+        EnrichmentKind::None | EnrichmentKind::IntrinsicRadial | EnrichmentKind::ExtrinsicRadial => {
+            CrackSmoothing::Visibility
+        }
     });
     settings
 }
@@ -137,6 +139,33 @@ fn ramps_and_abrupt_change() {
 fn belytschko_1997_figure_42_radial_enrichment_varies_by_3_percent_on_the_coarsest_grid() {
     for n in [9, 17, 25] {
         check_square([1.0, 0.0], &everywhere(grid(n, n, EnrichmentKind::IntrinsicRadial)), [0.03, 1e-8]);
+    }
+}
+
+#[test]
+fn measure_extrinsic() {
+    let time = std::time::Instant::now();
+    for kind in [EnrichmentKind::ExtrinsicFull, EnrichmentKind::ExtrinsicRadial, EnrichmentKind::IntrinsicFull] {
+        for smoothing in [CrackSmoothing::Diffraction { lambda: 1.0 }, CrackSmoothing::Visibility] {
+            for dilation in [None, Some(2.0), Some(3.2)] {
+                for n in [9, 17, 25] {
+                    let mut settings = everywhere(grid(n, n, kind));
+                    settings.approximation.smoothing.cracks = Some(smoothing);
+                    settings.approximation.dilation = dilation;
+                    let (model, _) = square(1.0, 1.0);
+                    let start = std::time::Instant::now();
+                    let disk = by_size(&model, settings.clone(), TipDomainShape::Disc, &SIZES);
+                    let took = start.elapsed();
+                    let box_ = by_size(&model, settings.clone(), TipDomainShape::Square, &SIZES[..5]);
+                    let all = || disk.iter().chain(&box_);
+                    let e1 = all().map(|t| (t[1] - 1.0).abs()).fold(0.0, f64::max);
+                    let e2 = all().map(|t| (t[2] - 1.0).abs()).fold(0.0, f64::max);
+                    let result = solve(&square(1.0, 0.0).0, &settings);
+                    println!("{kind:?} {smoothing:?} {dilation:?} {n}: K1 {:.5} % K2 {:.5} % energy {:.5} unknowns {} residual {:.1e} took {took:?}", 100.0*e1, 100.0*e2, result.energy_error.unwrap(), result.n_unknowns, result.residual);
+                    if time.elapsed().as_secs() > 150 { return; }
+                }
+            }
+        }
     }
 }
 
