@@ -197,3 +197,99 @@ impl Own {
         own
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::approximation::moving_least_squares::Derivatives;
+    use crate::approximation::{ApproximationSettings, MovingLeastSquares, Surroundings};
+    use crate::crack::{CrackPath, End, EndKind};
+    use crate::geometry::obstacles::Obstacles;
+
+    fn kinked() -> CrackPath {
+        let vertices = [(-1.2, -0.1), (-0.4, -0.1), (0.02, 0.03)].map(|p| Vector2::new(p.0, p.1)).to_vec();
+        CrackPath { name: "c".into(), vertices, ends: [EndKind::Mouth, EndKind::Tip] }
+    }
+
+    /// An uneven grid around the tip, without nodes on the crack.
+    fn nodes() -> Nodes<2> {
+        let place = |k: usize| {
+            let (i, j) = ((k % 15) as f64, (k / 15) as f64);
+            Vector2::new(i / 7.0 - 1.0 + 0.02 * (3.0 * j).sin(), j / 7.0 - 1.0 + 0.02 * (5.0 * i).cos())
+        };
+        let positions: Vec<Vector2> = (0..225).map(place).collect();
+        Nodes { sights: positions.clone(), support_radii: vec![Vector2::repeat(0.4); positions.len()], positions }
+    }
+
+    /// Parameters of the additional functions of a node that make tip function `f` less its mean: `F - mean = Σ c ψ`,
+    /// from the triangular mix.
+    fn parameters(own: &Own, f: usize, n: usize) -> Vec<f64> {
+        let mut wanted = [0.0; MOST_FUNCTIONS];
+        wanted[f] = 1.0;
+        let mut c = vec![0.0; n];
+        for m in (0..n).rev() {
+            c[m] = wanted[m] / own.mix[m][m];
+            (0..n).for_each(|k| wanted[k] -= c[m] * own.mix[m][k]);
+        }
+        c
+    }
+
+    #[test]
+    fn fields_of_the_tip_are_reproduced_where_all_nodes_are_enriched() {
+        let (path, nodes) = (kinked(), nodes());
+        let coordinates = TipCoordinates::new(&path, End::End, f64::INFINITY, 0.0);
+        let obstacles = Obstacles::new(path.segments().map(|(a, b)| [a, b]).collect());
+        let plain = MovingLeastSquares::new(nodes.clone(), obstacles, ApproximationSettings::default());
+        for functions in [TipFunctions::Full, TipFunctions::Radial] {
+            let region = ExtraRegion { coordinates: coordinates.clone(), outer: 10.0, clear: f64::INFINITY };
+            let extra = ExtraFunctions::new(functions, vec![region], &nodes);
+            let n = functions.count();
+            assert_eq!(extra.n_functions(), (1 + n) * nodes.len());
+            let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
+            for k in 0..60 {
+                let at = coordinates.tip() + direction(0.7 * k as f64) * (0.001 + 0.012 * k as f64);
+                plain.evaluate(at, at, Derivatives::Second, &mut around, &mut shape).unwrap();
+                extra.append([at, at], &mut shape);
+                let exact = coordinates.jet(functions, at, at);
+                for f in 0..n {
+                    let parameter = |i: u32| match (i as usize).checked_sub(nodes.len()) {
+                        None => extra.owns[i as usize].means[f],
+                        Some(j) => parameters(&extra.owns[j / n], f, n)[j % n],
+                    };
+                    let (mut found, mut sizes) = ((0.0, Vector2::zeros(), Matrix2::zeros()), [0.0; 3]);
+                    for (j, &i) in shape.neighbors.iter().enumerate() {
+                        let u = parameter(i);
+                        found.0 += shape.values[j] * u;
+                        found.1 += shape.gradients[j] * u;
+                        found.2 += shape.second_derivatives[j] * u;
+                        sizes[0] += (shape.values[j] * u).abs();
+                        sizes[1] += shape.gradients[j].norm() * u.abs();
+                        sizes[2] += shape.second_derivatives[j].norm() * u.abs();
+                    }
+                    let rounding = 1e-12;
+                    assert!((found.0 - exact.values[f]).abs() < rounding * sizes[0], "{f} {at}: {found:?} {exact:?}");
+                    assert!(
+                        (found.1 - exact.gradients[f]).norm() < rounding * sizes[1],
+                        "{f} {at}: {found:?} {exact:?}"
+                    );
+                    let second = exact.second_derivatives[f];
+                    assert!((found.2 - second).norm() < rounding * sizes[2], "{f} {at}: {found:?} {exact:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nodes_whose_supports_leave_the_clear_disk_have_no_functions() {
+        let nodes = nodes();
+        let coordinates = TipCoordinates::new(&kinked(), End::End, f64::INFINITY, 0.0);
+        let tip = coordinates.tip();
+        let region = ExtraRegion { coordinates, outer: 0.5, clear: 0.9 };
+        let extra = ExtraFunctions::new(TipFunctions::Full, vec![region], &nodes);
+        for (i, p) in nodes.positions.iter().enumerate() {
+            // The corner of the box around a support, a little outside of the support itself.
+            let expected = (p - tip).norm() < 0.5 && (p - tip).norm() + 0.4 * 2f64.sqrt() < 0.9;
+            assert_eq!(extra.of_node(i as u32).len(), if expected { 4 } else { 0 }, "{p}");
+        }
+    }
+}

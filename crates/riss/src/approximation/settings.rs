@@ -51,17 +51,17 @@ impl ApproximationSettings {
     }
 
     /// The smoothing that is used, nothing left open; rectangular supports know visibility only. The full enriched basis
-    /// needs continuous weights around tips: diffraction with λ = 1 if nothing is said.
+    /// and extrinsic enrichment need continuous weights around tips: diffraction with λ = 1 if nothing is said.
     pub fn resolved_smoothing(&self) -> SmoothingSettings {
         let mut given = match self.support {
             SupportShape::Circular => self.smoothing,
             SupportShape::Rectangular => SmoothingSettings::VISIBILITY,
         };
-        let is_full = match self.enrichment.kind {
-            EnrichmentKind::IntrinsicFull | EnrichmentKind::ExtrinsicFull => true,
-            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial | EnrichmentKind::ExtrinsicRadial => false,
+        let wants_diffraction = match self.enrichment.kind {
+            EnrichmentKind::IntrinsicFull | EnrichmentKind::ExtrinsicFull | EnrichmentKind::ExtrinsicRadial => true,
+            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => false,
         };
-        if is_full && given.cracks.is_none() {
+        if wants_diffraction && given.cracks.is_none() {
             given.cracks = Some(CrackSmoothing::Diffraction { lambda: 1.0 });
         }
         SmoothingSettings { cracks: Some(given.cracks()), holes: Some(given.holes()) }
@@ -72,7 +72,7 @@ impl ApproximationSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SmoothingSettings {
-    /// Around cracks; if not given visibility, or diffraction with the full enriched basis.
+    /// Around cracks; if not given visibility, or diffraction with the full enriched basis and extrinsic enrichment.
     pub cracks: Option<CrackSmoothing>,
     /// Around holes and re-entrant corners; visibility if not given. Wide supports at round holes want diffraction.
     pub holes: Option<HoleSmoothing>,
