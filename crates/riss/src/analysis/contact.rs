@@ -23,7 +23,7 @@ pub struct ContactSearch {
 /// Solves the system; with contact again and again, until no knot of a crack opens or closes any more.
 ///
 /// # Errors
-/// Those of [`solve`].
+/// Those of [`solve()`].
 pub fn solve_in_contact(
     model: &Model,
     discrete: &Discretization,

@@ -134,6 +134,10 @@ pub struct TipRecord {
     pub k2: Option<f64>,
     /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
     pub k_uncertainty: Option<f64>,
+    /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
+    pub k1_direct: Option<f64>,
+    /// Mode II factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
+    pub k2_direct: Option<f64>,
     /// J-integral [stress·length].
     pub j: Option<f64>,
     /// T-stress [stress].
@@ -166,6 +170,8 @@ impl TipRecord {
             k1: None,
             k2: None,
             k_uncertainty: None,
+            k1_direct: None,
+            k2_direct: None,
             j: None,
             t_stress: None,
             configurational_force: None,

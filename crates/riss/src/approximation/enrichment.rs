@@ -31,7 +31,7 @@ const CUT_REACH: f64 = 2.0;
 /// Derivatives of the tip functions are held nearer to the tip than this, over the least support radius around it.
 const CORE: f64 = 1e-5;
 
-/// The enriched regions of a body, one at each tip; they do not overlap.
+/// The enriched regions of a body, one at each tip; they do not overlap unless the functions are those of tips.
 #[derive(Clone, Debug)]
 pub struct Enrichment {
     functions: TipFunctions,
@@ -49,6 +49,34 @@ enum Form {
     OfNodes,
     /// As they are, less what moving least squares make of them [EFG, section 5.1].
     OfTips,
+}
+
+impl Form {
+    /// Largest outer radius of the region around a tip, and that if nothing is said [length].
+    ///
+    /// - `clear`: where the functions begin to jump beside the crack
+    fn outer_radii(self, model: &Model, id: TipId, clear: f64) -> [f64; 2] {
+        let crack = &model.cracks[id.crack];
+        let sharp = first_sharp_kink(crack, id.end);
+        match self {
+            Self::Intrinsic | Self::OfNodes => {
+                let free = free_radius(model, id.crack, crack.end_position(id.end));
+                [half_way(model, id).min(CLEARANCE * clear), sharp.min(OUTER_SHARE * free)]
+            }
+            // Regions may overlap, and no node has functions to lose. The nodes have to make up for the ramp: the wider
+            // the better.
+            Self::OfTips => [clear, sharp.min(clear)],
+        }
+    }
+
+    /// Inner radius if nothing is said [length].
+    fn inner_radius(self, outer: f64) -> f64 {
+        match self {
+            Self::Intrinsic | Self::OfNodes => INNER_SHARE * outer,
+            Self::OfTips if outer.is_finite() => 0.0,
+            Self::OfTips => outer,
+        }
+    }
 }
 
 /// A disk around a tip.
@@ -96,10 +124,8 @@ impl Enrichment {
         let (mut regions, mut notes) = (vec![], vec![]);
         for (id, frame) in model.tips() {
             let clear = clear_radius(model, id);
-            let limit = half_way(model, id).min(CLEARANCE * clear);
-            let free = free_radius(model, id.crack, frame.position);
-            let sharp = first_sharp_kink(&model.cracks[id.crack], id.end);
-            let wanted = settings.r2.unwrap_or(sharp.min(OUTER_SHARE * free));
+            let [limit, automatic] = form.outer_radii(model, id, clear);
+            let wanted = settings.r2.unwrap_or(automatic);
             let outer = wanted.min(limit);
             if settings.r2.is_some() && outer < wanted {
                 notes.push(format!(
@@ -107,7 +133,7 @@ impl Enrichment {
                     frame.position.x, frame.position.y
                 ));
             }
-            let inner = settings.r1.unwrap_or(INNER_SHARE * outer).min(outer);
+            let inner = settings.r1.unwrap_or(form.inner_radius(outer)).min(outer);
             let reach = match form {
                 Form::Intrinsic | Form::OfTips => CUT_REACH * outer,
                 Form::OfNodes => clear,
@@ -144,7 +170,7 @@ impl Enrichment {
                 if distance < support {
                     least = least.min(support);
                 }
-                if distance < outer + support {
+                if self.form == Form::Intrinsic && distance < outer + support {
                     region.values.insert(i as u32, region.coordinates.values(self.functions, *p, nodes.sights[i]));
                 }
             }

@@ -150,13 +150,15 @@ pub enum HoleSmoothing {
 pub struct EnrichmentSettings {
     /// What the basis, or the nodes, hold besides polynomials.
     pub kind: EnrichmentKind,
-    /// How enriched and plain shape functions are joined (Eq. 54); intrinsic kinds only.
+    /// How enriched and plain shape functions are joined (Eq. 54), and how the functions of `extrinsic-mls` fade.
     pub ramp: Ramp,
-    /// Distance from a tip up to which only enriched shape functions are used [length]; half of `r2` if not given.
+    /// Distance from a tip up to which only enriched shape functions are used [length]; half of `r2` if not given, 0 with
+    /// `extrinsic-mls`, which needs a wide ramp.
     #[schemars(range(min = 0.0))]
     pub r1: Option<f64>,
     /// Distance from a tip at which only plain shape functions are left [length]; half of the distance to boundaries,
-    /// other cracks and the far end of the crack if not given, or that to a sharp kink. Regions never overlap.
+    /// other cracks and the far end of the crack if not given, or that to a sharp kink. Regions never overlap. With
+    /// `extrinsic-mls` they may, and end at a sharp kink or where the crack does if not given: nowhere for an edge crack.
     #[schemars(range(min = 0.0))]
     pub r2: Option<f64>,
     /// Support radius over characteristic node spacing of the nodes that reach into a region, if larger than
@@ -197,8 +199,7 @@ pub enum EnrichmentKind {
     ExtrinsicFull,
     /// The root of the distance times the shape functions of the nodes nearer to a tip than `r2` (5.2).
     ExtrinsicRadial,
-    /// The displacements of both modes at each tip, with `K_I` and `K_II` as unknowns (5.1), up to `r1`; from there to `r2`
-    /// they fade by the ramp.
+    /// The displacements of both modes at each tip, with `K_I` and `K_II` as unknowns (5.1); they fade between `r1` and `r2`.
     ExtrinsicMls,
 }
 

@@ -3,7 +3,7 @@
 use super::aabb::Aabb;
 use super::predicates::segment_is_cut;
 use super::tree::BoxTree;
-use crate::math::Vector2;
+use crate::math::{Vector, Vector2};
 
 /// Opaque segments with a tree over them.
 #[derive(Clone, Debug)]
@@ -47,5 +47,17 @@ impl Obstacles {
             let [c, d] = self.segments[i as usize];
             !segment_is_cut(a, b, c, d)
         })
+    }
+}
+
+/// What sight lines cannot pass, in any dimension.
+pub trait Opaque<const D: usize>: Sync {
+    /// Whether nothing cuts the segment from `from` to `to`; touching at an end does not cut.
+    fn visible(&self, from: Vector<D>, to: Vector<D>) -> bool;
+}
+
+impl Opaque<2> for Obstacles {
+    fn visible(&self, from: Vector2, to: Vector2) -> bool {
+        Obstacles::visible(self, from, to)
     }
 }

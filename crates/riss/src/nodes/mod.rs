@@ -6,6 +6,7 @@
 
 mod budget;
 pub mod chains;
+pub mod cloud;
 pub mod fill;
 pub mod generation;
 mod ligaments;

@@ -89,7 +89,7 @@ impl Discretization {
     /// Builds supports, cells and neighbor lists on generated nodes.
     ///
     /// # Errors
-    /// [`Error::SingularMomentMatrix`] where no enlargement of supports makes the fit possible.
+    /// [`crate::Error::SingularMomentMatrix`] where no enlargement of supports makes the fit possible.
     pub fn new(
         model: &Model,
         layered: Layered,

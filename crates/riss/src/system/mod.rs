@@ -6,11 +6,13 @@ pub mod crack_faces;
 pub mod discretization;
 pub mod galerkin;
 pub mod linear_solver;
+mod node_solver;
 pub mod ordering;
 pub mod rigid_motion;
 mod safeguard;
 pub mod settings;
 pub mod solve;
+mod tip_factors;
 
 pub use discretization::Discretization;
 pub use galerkin::{LinearSystem, assemble};

@@ -13,7 +13,7 @@ use riss::model::{BoundaryLoad, Domain, Model, RigidMotion, TractionValue};
 use std::f64::consts::TAU;
 
 /// Plates in an ordinary test run; `RISS_PLATES` asks for more.
-const PLATES: u64 = 6;
+const PLATES: u64 = 2;
 
 /// A plate of ten by up to ten, with up to ten holes and one to ten cracks that keep clear of one another.
 fn plate(seed: u64) -> Model {

@@ -77,6 +77,8 @@ fn crack() -> CrackRecord {
             k1: Some(FIELD.k1),
             k2: Some(f64::INFINITY),
             k_uncertainty: Some(0.01),
+            k1_direct: None,
+            k2_direct: None,
             j: Some(0.125),
             t_stress: None,
             configurational_force: Some(Vector2::new(0.125, f64::NAN)),

@@ -100,7 +100,12 @@ fn fields_of_the_tip_are_reproduced() {
 
 #[test]
 fn linear_fields_are_reproduced_in_and_around_the_regions() {
-    for kind in [EnrichmentKind::IntrinsicFull, EnrichmentKind::IntrinsicRadial, EnrichmentKind::ExtrinsicFull] {
+    for kind in [
+        EnrichmentKind::IntrinsicFull,
+        EnrichmentKind::IntrinsicRadial,
+        EnrichmentKind::ExtrinsicFull,
+        EnrichmentKind::ExtrinsicMls,
+    ] {
         for ramp in [Ramp::Linear, Ramp::Quintic, Ramp::Abrupt] {
             let mls = approximation(4, kind, Basis::Linear, [0.05, 0.15], ramp);
             for at in points(Vector2::new(0.4, 0.3), 0.22, 9) {
@@ -122,8 +127,13 @@ fn linear_fields_are_reproduced_in_and_around_the_regions() {
 #[test]
 fn derivatives_are_those_of_finite_differences() {
     let mut compared = 0;
-    let (intrinsic, extrinsic) = (EnrichmentKind::IntrinsicFull, EnrichmentKind::ExtrinsicFull);
-    for (kind, ramp) in [(intrinsic, Ramp::Linear), (intrinsic, Ramp::Quintic), (extrinsic, Ramp::Quintic)] {
+    let kinds = [
+        (EnrichmentKind::IntrinsicFull, Ramp::Linear),
+        (EnrichmentKind::IntrinsicFull, Ramp::Quintic),
+        (EnrichmentKind::ExtrinsicFull, Ramp::Quintic),
+        (EnrichmentKind::ExtrinsicMls, Ramp::Quintic),
+    ];
+    for (kind, ramp) in kinds {
         let mls = approximation(5, kind, Basis::Linear, [0.05, 0.15], ramp);
         for tip in [Vector2::new(0.4, 0.3), Vector2::new(0.52, 0.7)] {
             for at in points(tip, 0.2, 10).into_iter().filter(|p| (p - tip).norm() > 0.01) {
