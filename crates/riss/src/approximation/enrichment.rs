@@ -326,8 +326,10 @@ fn clear_radius(model: &Model, id: TipId) -> f64 {
         EndKind::Tip | EndKind::Junction => (crack.end_position(far) - tip).norm(),
         EndKind::Mouth => {
             let path = crack.from_end(far);
-            let again = path[0] + through_void(model, path[0], path[0] - path[1]);
-            (again - tip).norm()
+            let way = through_void(model, path[0], path[0] - path[1]);
+            // That far there is no body left to jump in.
+            let leaves_body = way.norm() > 0.999 * model.domain.aabb().size().norm();
+            if leaves_body { f64::INFINITY } else { (path[0] + way - tip).norm() }
         }
     };
     leaves.min(first_fold(crack, id.end))
