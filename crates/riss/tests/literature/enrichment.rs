@@ -173,11 +173,12 @@ fn belytschko_1997_figure_40_energy_error_is_a_tenth_of_the_linear_one() {
 }
 
 /// Stress ahead of the tip and around it at 0.1 a, and the opening of the faces.
-#[test]
-fn belytschko_1997_figures_37_38_and_26_fields_at_the_tip() {
+///
+/// `bounds`: relative error ahead and of the opening, and error around over σ at 0.1 a.
+fn check_fields(settings: &Settings, bounds: [f64; 2]) {
     let (model, field) = square(1.0, 0.0);
-    let settings = full(17);
-    let discrete = discretize(&model, &settings, &mut Silent).unwrap();
+    let kind = settings.approximation.enrichment.kind;
+    let discrete = discretize(&model, settings, &mut Silent).unwrap();
     let system = assemble(&model, &discrete, &settings.constraints).unwrap();
     let solution = solve_system(&model, &discrete, system, &settings.constraints, settings.solver).unwrap();
     let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
@@ -185,15 +186,16 @@ fn belytschko_1997_figures_37_38_and_26_fields_at_the_tip() {
         discrete.approximation.evaluate(p, sight, Derivatives::First, &mut around, &mut shape).unwrap();
         (shape.value(&solution.parameters), STEEL.stress(&shape.gradient(&solution.parameters)))
     };
+    let mut worst = [0.0f64; 3];
     for k in 0..40 {
         let p = Vector2::new(0.9 * 0.8f64.powi(k), 0.0);
         let (found, exact) = (at(p, p).1[(1, 1)], 1.0 / (2.0 * PI * p.x).sqrt());
-        assert!((found / exact - 1.0).abs() <= 0.002, "ahead at {}: {found} of {exact}", p.x);
+        worst[0] = worst[0].max((found / exact - 1.0).abs());
     }
     for k in 0..60 {
         let p = direction(-PI + 2.0 * PI * (k as f64 + 0.5) / 60.0) * 0.1;
         let (found, exact) = (at(p, p).1, field.stress(&STEEL, p));
-        assert!((found - exact).norm() <= 0.005 / (2.0 * PI * 0.1f64).sqrt(), "around at {p}: {found} of {exact}");
+        worst[1] = worst[1].max((found - exact).norm() * (2.0 * PI * 0.1f64).sqrt());
     }
     for k in 0..20 {
         let p = Vector2::new(-0.9 * 0.7f64.powi(k), 0.0);
@@ -201,8 +203,16 @@ fn belytschko_1997_figures_37_38_and_26_fields_at_the_tip() {
         let opening = at(p, p + shift).0.y - at(p, p - shift).0.y;
         // δ = 8 K_I/E' √(r/2π) [EFG, Eq. 60b at θ = ±π].
         let exact = 8.0 / STEEL.effective_young() * (-p.x / (2.0 * PI)).sqrt();
-        assert!((opening / exact - 1.0).abs() <= 0.002, "opening at {}: {opening} of {exact}", p.x);
+        worst[2] = worst[2].max((opening / exact - 1.0).abs());
     }
+    let [ahead, around, opening] = worst;
+    assert!(ahead <= bounds[0] && around <= bounds[1] && opening <= bounds[0], "{kind:?}: {worst:?}");
+}
+
+#[test]
+fn belytschko_1997_figures_37_38_and_26_fields_at_the_tip() {
+    check_fields(&everywhere(grid(17, 17, EnrichmentKind::IntrinsicFull)), [0.002, 0.005]);
+    check_fields(&everywhere(grid(17, 17, EnrichmentKind::ExtrinsicMls)), [0.0005, 0.001]);
 }
 
 /// Each number of Table 1 is at least as near to the reference as the paper's.
