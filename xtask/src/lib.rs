@@ -4,6 +4,7 @@
 //! [`mod@reference`] turns the JSON schema of the case file into a page of the book, [`tidy`] checks the manners of the code.
 
 pub mod bench;
+pub mod calibrate;
 pub mod ci;
 pub mod docs;
 pub mod expected;

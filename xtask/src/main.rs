@@ -1,13 +1,14 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
-use xtask::{bench, ci, docs, python, tidy, verify};
+use xtask::{bench, calibrate, ci, docs, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
 
   ci      everything that continuous integration runs: format, clippy, tests, documentation, Python
   tidy    layers, headers, citations, names, file length, case folders
   verify  runs every case and compares it with its reference values; writes a table; grows random plates
+  calibrate  compares the error bars of stress intensity factors with the errors in many bodies
   docs    writes the generated page of the book, and builds the book where mdbook is installed
   python  builds the Python package and tests it, in an environment under `target`
   bench   runs the benchmarks; further words go to `cargo bench`";
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
         ("ci", []) => ci::run_all(),
         ("tidy", []) => tidy::run(),
         ("verify", names) => verify::run(names),
+        ("calibrate", []) => calibrate::run(),
         ("docs", []) => docs::run(),
         ("bench", rest) => bench::run(rest),
         ("python", []) => python::test(),

@@ -1,7 +1,8 @@
-//! The riss program: `run`, `check`, `compare`, `report`, `export`, `shape`, `schema`, `new`.
+//! The riss program: `run`, `check`, `compare`, `converge`, `report`, `export`, `shape`, `schema`, `new`.
 
 mod check;
 mod compare;
+mod converge;
 mod desktop;
 mod diagnostics;
 mod export;
@@ -48,6 +49,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Says how far the crack paths and stress intensity factors of two runs are apart
     Compare(compare::CompareArguments),
+    /// Solves on coarser and finer nodes and says where K goes, and how fast
+    Converge(converge::ConvergeArguments),
     /// Makes report.html again from a folder of results
     Report(report::ReportArguments),
     /// Writes the cracks or their stress intensity factors for another program
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Converge(arguments) => converge::run(&arguments),
         Command::Report(arguments) => report::write(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Shape(arguments) => shape::shape(&arguments),

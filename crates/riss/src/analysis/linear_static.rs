@@ -2,6 +2,7 @@
 
 use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
+use super::error_bars::widen_error_bars;
 use super::fields::sample_fields;
 use super::record::*;
 use super::refinement::refine;
@@ -139,7 +140,8 @@ pub(super) fn solve_on(
         ));
     }
     warnings.observer.stage(Stage::Fracture);
-    let cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
+    let mut cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
+    widen_error_bars(model, &discrete, &solution, &mut cracks)?;
     Ok(Solved { discrete, solution, method, cracks })
 }
 
@@ -271,11 +273,18 @@ fn evaluate_tip(
     record.k1 = Some(k1);
     record.k2 = Some(k2);
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
-    record.j = Some(mean(|t| t.j));
+    let clear = view.clear_of_kinks(&radii);
+    // Faces that turn away hold energy that counts for J, and it is poor next to a kink.
+    record.j = Some(match clear == radii {
+        true => mean(|t| t.j),
+        false => {
+            let found = tip_integrals(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
+            found.iter().map(|t| t.j).sum::<f64>() / found.len() as f64
+        }
+    });
     record.t_stress = Some(mean(|t| t.t_stress));
     // What it takes on loaded faces is not integrated.
     if face_pressure.is_none() {
-        let clear = view.clear_of_kinks(&radii);
         let forces =
             configurational_forces(&view, &clear, &settings.fracture, &model.material, loads.body_force, &field)?;
         let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();

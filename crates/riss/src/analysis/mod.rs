@@ -1,8 +1,10 @@
 //! Analyses: they join all the stages below and report to an [`Observer`].
 
 pub mod contact;
+pub mod convergence;
 pub mod crack_growth;
 pub mod energy;
+mod error_bars;
 pub mod fields;
 pub mod linear_static;
 pub mod node_function;
@@ -10,6 +12,7 @@ pub mod record;
 pub mod refinement;
 pub mod settings;
 
+pub use convergence::{ConvergenceStudy, Limit, converge};
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
 pub use node_function::{NodeFunction, nearest_node, sample_node_function};

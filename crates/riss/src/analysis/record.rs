@@ -132,7 +132,8 @@ pub struct TipRecord {
     pub k1: Option<f64>,
     /// Mode II stress intensity factor [stress·√length].
     pub k2: Option<f64>,
-    /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
+    /// Error bar of both ([`error_bars`](super::error_bars)); with an accuracy to meet at least what the last refinement
+    /// lets expect of the next ones [stress·√length].
     pub k_uncertainty: Option<f64>,
     /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
     pub k1_direct: Option<f64>,

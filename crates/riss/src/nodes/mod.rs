@@ -10,6 +10,7 @@ pub mod cloud;
 pub mod fill;
 pub mod generation;
 mod ligaments;
+mod scaling;
 pub mod settings;
 mod source_tree;
 pub mod spacing;

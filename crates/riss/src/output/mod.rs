@@ -2,11 +2,12 @@
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
-//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`].
+//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`convergence`], [`whole_file`].
 
 mod color_map;
 pub mod comparison;
 mod contours;
+pub mod convergence;
 pub mod exports;
 pub mod field_picture;
 pub mod fields;
@@ -21,6 +22,7 @@ mod vtk;
 pub mod whole_file;
 
 pub use comparison::Comparison;
+pub use convergence::write_convergence;
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
 pub use report::{REPORT_FILE, RunSource, write_report};
