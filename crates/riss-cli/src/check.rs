@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 /// Arguments of `riss check`.
 #[derive(Args)]
+#[command(after_help = "Examples:\n  riss check case.toml\n  riss check case.toml --set crack[0].path[1]=[40,100]")]
 pub struct CheckArguments {
     /// Case file
     pub case: PathBuf,

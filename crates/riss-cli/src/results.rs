@@ -24,6 +24,7 @@ impl RunRecord {
         RunInfo {
             title: case.model.title.clone(),
             method: "element-free-galerkin".into(),
+            units: case.units.clone(),
             status,
             wall_time_s: self.wall_time_s,
             stage_time_s: self.stage_time_s.clone(),
@@ -72,6 +73,7 @@ pub fn source(case: &Case) -> RunSource {
         platform: format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
         threads: rayon::current_num_threads(),
         started_unix_s: since_1970.as_secs(),
+        settings: case.effective_settings(),
     }
 }
 
@@ -93,11 +95,15 @@ pub fn json(case: &Case, run: &RunRecord, result: &StaticResult) -> String {
     results_json(&run.info(case, RunStatus::Done), result)
 }
 
-/// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.
+/// `NAME.riss-out` in the current folder.
 pub fn default_folder(case: &Path) -> PathBuf {
+    PathBuf::from(format!("{}.riss-out", name(case)))
+}
+
+/// Name of a case: the case file's, or its folder's if the file is just case.toml.
+pub fn name(case: &Path) -> String {
     let path = case.canonicalize().unwrap_or_else(|_| case.to_path_buf());
     let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    let name = if stem == "case" { folder.unwrap_or(stem) } else { stem };
-    PathBuf::from(format!("{name}.riss-out"))
+    if stem == "case" { folder.unwrap_or(stem) } else { stem }
 }

@@ -11,7 +11,10 @@ use std::path::PathBuf;
 
 /// Arguments of `riss shape`.
 #[derive(Args)]
-#[command(group = ArgGroup::new("which").required(true))]
+#[command(
+    group = ArgGroup::new("which").required(true),
+    after_help = "Examples:\n  riss shape case.toml --at 30,100\n  riss shape case.toml --node 57 --set approximation.dilation=3"
+)]
 pub struct ShapeArguments {
     /// Case file
     pub case: PathBuf,

@@ -81,7 +81,7 @@ pub fn converge(
         let (tips, strain_energy) = (tips.collect(), result.strain_energy);
         levels.push(Level { factor, n_nodes: result.n_nodes, strain_energy, tips });
     }
-    keep_common(&mut levels);
+    keep_known_in_all(&mut levels);
     let n_tips = levels.first().map_or(0, |l| l.tips.len());
     let limits = (0..n_tips).map(|tip| {
         let values = |mode: usize| levels.iter().map(|l| (l.factor, l.tips[tip].factors[mode])).collect::<Vec<_>>();
@@ -96,7 +96,7 @@ fn studied(crack: &str, tip: &TipRecord) -> Option<StudiedTip> {
 }
 
 /// Drops tips that some solution knows nothing of.
-fn keep_common(levels: &mut [Level]) {
+fn keep_known_in_all(levels: &mut [Level]) {
     let all = levels.to_vec();
     for level in levels {
         let is_in = |l: &Level, t: &StudiedTip| l.tips.iter().any(|o| o.crack == t.crack && o.end == t.end);

@@ -99,7 +99,13 @@ impl<'a> Checker<'a> {
     }
 
     fn table(&mut self, node: &Node, table: &BTreeMap<String, Node>, schema: &'a Value, key: &str) {
-        let Some(properties) = schema["properties"].as_object() else { return };
+        let Some(properties) = schema["properties"].as_object() else {
+            // A table of values under names that the author chooses.
+            for (name, child) in table.iter().filter(|_| schema["additionalProperties"].is_object()) {
+                self.node(child, &schema["additionalProperties"], &join(key, name));
+            }
+            return;
+        };
         let start = self.problems.len();
         for (name, child) in table {
             let path = join(key, name);

@@ -7,6 +7,7 @@ pub mod domain;
 pub mod field;
 pub mod load;
 pub mod support;
+pub mod units;
 
 use crate::crack::{CrackPath, TipFrame, TipId};
 use crate::exact::ExactField;
@@ -18,6 +19,7 @@ pub use field::{FieldPoint, ScalarField};
 pub use load::{BodyForce, BoundaryLoad, CrackFaceLoad, PointLoad, TractionValue};
 use std::sync::Arc;
 pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
+pub use units::UnitNames;
 
 /// A linear elastic body in the plane with cracks, loads and supports.
 #[derive(Clone, Debug)]

@@ -198,6 +198,7 @@ mod tests {
         let info = RunInfo {
             title: "t".into(),
             method: "m".into(),
+            units: None,
             status: RunStatus::Done,
             wall_time_s: 0.0,
             stage_time_s: vec![],

@@ -2,7 +2,8 @@
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
-//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`convergence`], [`whole_file`].
+//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
+//! [`convergence`], [`run_table`] (of several runs), [`whole_file`].
 
 mod color_map;
 pub mod comparison;
@@ -15,6 +16,7 @@ pub mod history;
 pub mod model_picture;
 pub mod report;
 pub mod results;
+pub mod run_table;
 pub mod run_writer;
 pub mod shape_picture;
 mod svg;
@@ -31,6 +33,7 @@ pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;
 
 use crate::analysis::StaticResult;
+use crate::model::UnitNames;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -49,6 +52,8 @@ pub struct RunInfo {
     pub title: String,
     /// Name of the method.
     pub method: String,
+    /// Units, if the case says them.
+    pub units: Option<UnitNames>,
     /// How the run ended.
     pub status: RunStatus,
     /// Time from start to end [s].

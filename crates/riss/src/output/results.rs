@@ -8,6 +8,7 @@ use crate::analysis::{
 };
 use crate::crack::{End, EndKind};
 use crate::math::Vector2;
+use crate::model::UnitNames;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,9 @@ pub struct Results {
     pub case: String,
     /// Name of the method.
     pub method: String,
+    /// Units of all numbers, if the case says them.
+    #[serde(default)]
+    pub units: Option<UnitNames>,
     /// How the run ended.
     pub status: RunStatus,
     /// Number of nodes in the last step.
@@ -188,6 +192,7 @@ impl Results {
             riss: env!("CARGO_PKG_VERSION").into(),
             case: info.title.clone(),
             method: info.method.clone(),
+            units: info.units.clone(),
             status: info.status,
             nodes: last.n_nodes,
             unknowns: last.n_unknowns,

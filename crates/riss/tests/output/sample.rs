@@ -19,6 +19,7 @@ pub fn info() -> RunInfo {
     RunInfo {
         title: "square, \"edge\" crack".into(),
         method: "efg".into(),
+        units: None,
         status: RunStatus::Done,
         wall_time_s: 1.5,
         stage_time_s: vec![("nodes".into(), 0.25), ("solve".into(), 0.5), ("solve".into(), 0.25)],
