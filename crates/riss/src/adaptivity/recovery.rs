@@ -82,7 +82,8 @@ impl<'a> RecoveredStress<'a> {
         if self.fine.evaluate(at, sight, Derivatives::First, around, shape).is_err() {
             self.wide.evaluate(at, sight, Derivatives::First, around, shape)?;
         }
-        let pairs = shape.neighbors.iter().zip(&shape.values);
+        // The plain shape functions alone are a mean.
+        let pairs = shape.neighbors.iter().zip(&shape.values).filter(|(n, _)| (**n as usize) < self.nodal.len());
         Ok(pairs.fold(Matrix2::zeros(), |sum, (&n, &v)| sum + self.nodal[n as usize] * v))
     }
 }

@@ -93,6 +93,7 @@ pub(super) fn solve_step(
         refinements,
         fields,
         nodes: node_records.collect(),
+        extra_parameters: solution.parameters[nodes.len()..].to_vec(),
         integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
         warnings: warnings.list,
     })
@@ -238,6 +239,10 @@ fn evaluate_tip(
 ) -> Result<TipRecord> {
     let view = TipView::new(model, id);
     let mut record = TipRecord::unknown(id.end, view.frame);
+    if !solution.tip_factors.is_empty() {
+        let place = model.tips().iter().position(|t| t.0 == id);
+        [record.k1_direct, record.k2_direct] = place.map_or([None; 2], |tip| solution.tip_factors[tip].map(Some));
+    }
     let radii = match view.radii(settings.fracture.domain, settings.fracture.radii.as_deref()) {
         Ok((radii, note)) => {
             note.into_iter().for_each(|n| warnings.add(n));

@@ -135,6 +135,10 @@ pub struct TipRecord {
     /// Error bar of both ([`error_bars`](super::error_bars)); with an accuracy to meet at least what the last refinement
     /// lets expect of the next ones [stress·√length].
     pub k_uncertainty: Option<f64>,
+    /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
+    pub k1_direct: Option<f64>,
+    /// Mode II factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
+    pub k2_direct: Option<f64>,
     /// J-integral [stress·length].
     pub j: Option<f64>,
     /// T-stress [stress].
@@ -167,6 +171,8 @@ impl TipRecord {
             k1: None,
             k2: None,
             k_uncertainty: None,
+            k1_direct: None,
+            k2_direct: None,
             j: None,
             t_stress: None,
             configurational_force: None,
@@ -304,6 +310,8 @@ pub struct StaticResult {
     pub fields: Fields,
     /// Positions of the nodes.
     pub nodes: Vec<NodeRecord>,
+    /// Parameters of the additional functions of enriched nodes [length].
+    pub extra_parameters: Vec<Vector2>,
     /// Integration points: position and integration weight.
     pub integration_points: Vec<(Vector2, f64)>,
     /// All warnings, in order.
@@ -324,6 +332,7 @@ impl StaticResult {
             refinements: vec![],
             fields: Fields::default(),
             nodes: vec![],
+            extra_parameters: vec![],
             integration_points: vec![],
             warnings: vec![],
         }

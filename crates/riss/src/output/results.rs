@@ -147,6 +147,12 @@ pub struct TipResults {
     /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
+    /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` enrichment [stress·√length].
+    #[serde(rename = "K_I_direct")]
+    pub k1_direct: Option<f64>,
+    /// Mode II factor that was solved for as an unknown, with `extrinsic-mls` enrichment [stress·√length].
+    #[serde(rename = "K_II_direct")]
+    pub k2_direct: Option<f64>,
     /// J-integral [stress·length].
     #[serde(rename = "J")]
     pub j: Option<f64>,
@@ -263,6 +269,8 @@ impl TipResults {
             k1: tip.k1.and_then(finite),
             k2: tip.k2.and_then(finite),
             k_uncertainty: tip.k_uncertainty.and_then(finite),
+            k1_direct: tip.k1_direct.and_then(finite),
+            k2_direct: tip.k2_direct.and_then(finite),
             j: tip.j.and_then(finite),
             t_stress: tip.t_stress.and_then(finite),
             configurational_force: tip.configurational_force.and_then(finite_pair),

@@ -77,7 +77,7 @@ pub struct Discretization {
     pub boundary: Vec<BoundaryElement>,
     /// Elements along cracks whose faces something acts on.
     pub crack_faces: Vec<CrackFaceElement>,
-    /// Neighbors of each cell.
+    /// Neighbors of each cell, additional functions included.
     pub cell_nodes: NodeLists,
     /// Neighbors of each boundary element.
     pub boundary_nodes: NodeLists,
@@ -149,6 +149,11 @@ impl Discretization {
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
         self.approximation.nodes().len()
+    }
+
+    /// Number of functions, each with two unknowns: those of nodes, and further ones of enriched nodes.
+    pub fn n_functions(&self) -> usize {
+        self.approximation.n_functions()
     }
 
     /// From where a given point sees: slightly inside if it lies on the boundary.
