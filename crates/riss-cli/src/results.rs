@@ -23,7 +23,7 @@ impl RunRecord {
     pub fn info(&self, case: &Case, status: RunStatus) -> RunInfo {
         RunInfo {
             title: case.model.title.clone(),
-            method: "element-free-galerkin".into(),
+            method: case.settings.method.name().into(),
             status,
             wall_time_s: self.wall_time_s,
             stage_time_s: self.stage_time_s.clone(),

@@ -203,7 +203,7 @@ impl Observer for Listener<'_> {
             };
             let info = RunInfo {
                 title: self.case.model.title.clone(),
-                method: "element-free-galerkin".into(),
+                method: self.case.settings.method.name().into(),
                 status,
                 wall_time_s: self.clock.start.elapsed().as_secs_f64(),
                 stage_time_s: self.clock.stages.clone(),

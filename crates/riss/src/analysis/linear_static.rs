@@ -148,7 +148,7 @@ pub(super) fn solve_on(
 /// [`Error::NodeGeneration`] and [`Error::SingularMomentMatrix`].
 pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
-    let layered = generate(model, &settings.nodes)?;
+    let layered = generate(model, &settings.nodes, settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
@@ -164,7 +164,7 @@ pub fn discretize_at(
     observer: &mut dyn Observer,
 ) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
-    let layered = generate_at(model, spacing, settings.nodes.star.as_ref())?;
+    let layered = generate_at(model, spacing, settings.nodes.star.as_ref(), settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }

@@ -5,6 +5,7 @@ pub mod crack_growth;
 pub mod energy;
 pub mod fields;
 pub mod linear_static;
+pub mod method;
 pub mod node_function;
 pub mod record;
 pub mod refinement;
@@ -12,6 +13,7 @@ pub mod settings;
 
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
+pub use method::Method;
 pub use node_function::{NodeFunction, nearest_node, sample_node_function};
 pub use record::*;
 pub use refinement::{Refined, solve_refined};

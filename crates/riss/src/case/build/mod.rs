@@ -7,6 +7,7 @@ mod exact;
 mod growth;
 mod loads;
 mod mesh;
+mod method;
 mod outline;
 mod parts;
 mod report;
@@ -34,9 +35,10 @@ type Built = (Model, Settings, Option<GrowthSettings>, OutputSettings, Vec<Probl
 /// What a case means; `None` or more problems if it is not valid.
 pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
     let faulty = super::check::check(document, &super::json_schema(), problems);
-    let file = deserialize(document, &faulty, problems)?;
+    let mut file = deserialize(document, &faulty, problems)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut report = Report::new(document, problems);
+    method::complete(&mut file, &mut report);
     let material = material(&file.material, &mut report);
     let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
     let mut settings = settings::settings(&file, folder, &mut report);
