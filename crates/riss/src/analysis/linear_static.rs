@@ -268,14 +268,10 @@ fn evaluate_tip(
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
     record.j = Some(mean(|t| t.j));
     record.t_stress = Some(mean(|t| t.t_stress));
-    // What it takes on loaded faces is not integrated.
-    if face_pressure.is_none() {
-        let clear = view.clear_of_kinks(&radii);
-        let forces =
-            configurational_forces(&view, &clear, &settings.fracture, &model.material, loads.body_force, &field)?;
-        let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
-        record.configurational_force = Some(sum / forces.len() as f64);
-    }
+    let clear = view.clear_of_kinks(&radii, discrete.triangulation.spacing_at(view.frame.position));
+    let forces = configurational_forces(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
+    let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
+    record.configurational_force = Some(sum / forces.len() as f64);
     record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)

@@ -23,7 +23,7 @@ pub enum Method {
     /// Cracking particles [CPM]: cracks are segments of particles along them, on regular and given nodes too, which hide the
     /// two sides from each other. Where nothing else is said, `approximation.dilation` is 2.2 (linear basis),
     /// `fracture.domain` is `square`, `growth.criterion` is `configurational-force` and `growth.control` halves increments that
-    /// turn by more than 5 degrees.
+    /// turn by more than 5 degrees once.
     CrackingParticles,
 }
 
@@ -66,7 +66,7 @@ impl Method {
             Self::ElementFreeGalerkin => GrowthSettings::default(),
             Self::CrackingParticles => GrowthSettings {
                 criterion: GrowthCriterion::ConfigurationalForce,
-                control: IncrementControl::HalvedOnTurns { angle_deg: PARTICLE_TURN },
+                control: IncrementControl::HalvedOnTurns { angle_deg: PARTICLE_TURN, least: 0.5 },
                 ..GrowthSettings::default()
             },
         }

@@ -198,3 +198,49 @@ fn smooth(chains: &mut Chains, n_fixed: usize) -> Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Case;
+    use crate::geometry::predicates::distance_to_segment;
+
+    fn check_particles(path: &str) {
+        let text = format!(
+            "rigid_motion = 'mean-is-zero'
+            material = {{ young = 1, poisson = 0.3, plane = 'strain' }}
+            geometry.rectangle = {{ lower = [0, 0], upper = [2, 2] }}
+            crack = [{{ path = {path} }}]
+            remote_stress.yy = 1
+            nodes.layout.structured = {{ nx = 21, ny = 21 }}"
+        );
+        let case = Case::parse(&text, "case.toml".as_ref(), &[]).unwrap();
+        let crack = &case.model.cracks[0];
+        let found = generate(&case.model, &case.settings.nodes, CrackForm::Particles).unwrap();
+        let [particles] = &found.particles[..] else { panic!("one crack") };
+        assert_eq!(&particles.union(), crack, "{path}");
+        let places: Vec<Vector2> = particles.particles.iter().map(|p| p.position).collect();
+        for w in places.windows(2) {
+            let h = (w[1] - w[0]).norm();
+            assert!(h > 0.039 && h < 0.141, "{path}: {h}");
+        }
+        for (p, is_node) in found.chains.positions.iter().zip(&found.chains.is_node) {
+            let off = crack.segments().map(|(a, b)| distance_to_segment(*p, a, b)).fold(f64::INFINITY, f64::min);
+            let is_particle = places.contains(p);
+            assert!(*is_node, "{path}: {p}");
+            assert!(is_particle == (off < 1e-12), "{path}: {p} {off}");
+            // Boundary nodes stay.
+            let on_rim = case.model.domain.distance_to_boundary(*p) < 1e-12;
+            assert!(is_particle || on_rim || off > 0.039, "{path}: {p} {off}");
+        }
+    }
+
+    #[test]
+    fn a_grid_gets_particles_along_cracks() {
+        // On grid nodes with the tip on one and between two; askew; bent.
+        check_particles("[[0, 1], [1, 1]]");
+        check_particles("[[0, 1], [1.03, 1]]");
+        check_particles("[[0, 0.73], [1.37, 1.11]]");
+        check_particles("[[0.31, 0.4], [0.92, 1.33], [1.6, 1.3]]");
+    }
+}

@@ -88,7 +88,8 @@ fn check_table(method: Method, k1: f64, k2: f64, table: &[Row]) {
                 FractureSettings { domain: TipDomainShape::Square, j_integral, ..FractureSettings::default() };
             let what = format!("{method:?}, {k1} {k2}, c/a = {} {j_integral:?}", row.size);
             let radii = [row.size * A];
-            let force = configurational_forces(&view, &radii, &settings, &STEEL, None, &field).unwrap()[0];
+            let force =
+                configurational_forces(&view, &radii, &settings, &STEEL, &TipLoads::default(), &field).unwrap()[0];
             let tip = tip_integrals(&view, &radii, &settings, &STEEL, &TipLoads::default(), &field).unwrap()[0];
             let around = force.value(FaceTerm::LeftOut) / unit;
             let (error, paper) = ((around - exact).norm(), (Vector2::from(paper) - exact).norm());
