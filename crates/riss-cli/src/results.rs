@@ -23,7 +23,7 @@ impl RunRecord {
     pub fn info(&self, case: &Case, status: RunStatus) -> RunInfo {
         RunInfo {
             title: case.model.title.clone(),
-            method: "element-free-galerkin".into(),
+            method: case.settings.method.name().into(),
             units: case.units.clone(),
             status,
             wall_time_s: self.wall_time_s,

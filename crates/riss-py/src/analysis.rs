@@ -204,7 +204,7 @@ impl Observer for Listener<'_> {
             };
             let info = RunInfo {
                 title: self.case.model.title.clone(),
-                method: "element-free-galerkin".into(),
+                method: self.case.settings.method.name().into(),
                 units: self.case.units.clone(),
                 status,
                 wall_time_s: self.clock.start.elapsed().as_secs_f64(),

@@ -151,7 +151,7 @@ pub(super) fn solve_on(
 /// [`Error::NodeGeneration`] and [`Error::SingularMomentMatrix`].
 pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
-    let layered = generate(model, &settings.nodes)?;
+    let layered = generate(model, &settings.nodes, settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
@@ -167,7 +167,7 @@ pub fn discretize_at(
     observer: &mut dyn Observer,
 ) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
-    let layered = generate_at(model, spacing, settings.nodes.star.as_ref())?;
+    let layered = generate_at(model, spacing, settings.nodes.star.as_ref(), settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
@@ -273,7 +273,7 @@ fn evaluate_tip(
     record.k1 = Some(k1);
     record.k2 = Some(k2);
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
-    let clear = view.clear_of_kinks(&radii);
+    let clear = view.clear_of_kinks(&radii, discrete.triangulation.spacing_at(view.frame.position));
     // Faces that turn away hold energy that counts for J, and it is poor next to a kink.
     record.j = Some(match clear == radii {
         true => mean(|t| t.j),
@@ -283,13 +283,9 @@ fn evaluate_tip(
         }
     });
     record.t_stress = Some(mean(|t| t.t_stress));
-    // What it takes on loaded faces is not integrated.
-    if face_pressure.is_none() {
-        let forces =
-            configurational_forces(&view, &clear, &settings.fracture, &model.material, loads.body_force, &field)?;
-        let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
-        record.configurational_force = Some(sum / forces.len() as f64);
-    }
+    let forces = configurational_forces(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
+    let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
+    record.configurational_force = Some(sum / forces.len() as f64);
     record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)

@@ -114,6 +114,20 @@ impl Document {
         Some(node)
     }
 
+    /// Whether there is a value at a key path.
+    pub fn says(&self, key: &str) -> bool {
+        let mut steps = steps(key);
+        let Some(first) = steps.next() else { return false };
+        let mut node = self.root.get(first);
+        for step in steps {
+            node = match node.map(|n| &n.content) {
+                Some(Content::Table(table)) => table.get(step),
+                _ => None,
+            };
+        }
+        node.is_some()
+    }
+
     /// Puts a problem at the value of its key, or at the table that lacks it.
     pub fn locate(&self, problem: &mut Problem) {
         let Some(node) = self.find(&problem.key) else { return };

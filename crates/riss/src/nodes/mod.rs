@@ -7,6 +7,7 @@
 mod budget;
 pub mod chains;
 pub mod cloud;
+mod crack_clearance;
 pub mod fill;
 pub mod generation;
 mod ligaments;

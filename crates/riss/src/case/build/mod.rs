@@ -8,6 +8,7 @@ mod growth;
 mod import;
 mod loads;
 mod mesh;
+mod method;
 mod outline;
 mod parts;
 mod plausibility;
@@ -50,11 +51,12 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     let document = &*document;
     let mut faulty = super::check::check(document, &schema, problems);
     faulty.extend(values.faulty);
-    let file = deserialize(document, &faulty, problems)?;
+    let mut file = deserialize(document, &faulty, problems)?;
     let mut report = Report::new(document, problems);
     for remark in imported.iter().flat_map(|m| &m.remarks) {
         report.note(import::KEY, remark);
     }
+    method::complete(&mut file, &mut report);
     let material = material(&file.material, &mut report);
     let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
     let mut settings = settings::settings(&file, folder, &mut report);

@@ -7,7 +7,7 @@ pub(in crate::case) use conditions::*;
 pub(in crate::case) use geometry::*;
 
 use crate::adaptivity::AccuracySettings;
-use crate::analysis::GrowthSettings;
+use crate::analysis::{GrowthSettings, Method};
 use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
@@ -37,8 +37,8 @@ pub(in crate::case) struct CaseFile {
     #[serde(default, rename = "parameters")]
     pub _parameters: BTreeMap<String, f64>,
     /// Numerical method.
-    #[serde(default, rename = "method")]
-    pub _method: Method,
+    #[serde(default)]
+    pub method: Method,
     /// Elastic constants.
     pub material: Material,
     /// Outline of the body.
@@ -113,15 +113,6 @@ pub(in crate::case) struct CaseFile {
     /// What is written.
     #[serde(default)]
     pub output: OutputSettings,
-}
-
-/// Numerical method.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(in crate::case) enum Method {
-    /// Element-free Galerkin with moving least squares.
-    #[default]
-    ElementFreeGalerkin,
 }
 
 /// Elastic constants.
