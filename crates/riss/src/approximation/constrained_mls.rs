@@ -2,13 +2,14 @@
 //!
 //! All derivatives at the center are coefficients of the fit, so nothing is differentiated, and the shape functions
 //! take the value one at their own node and zero at the others. Near crack fronts the basis also holds the four
-//! functions of [EFG, Eq. 50] with their exact derivatives. Between nodes the constraint is dropped.
+//! functions of [EFG, Eq. 50] with their exact derivatives, and in space these times the length along the front. Between nodes the constraint is dropped.
 
 use super::ShapeFunctions;
 use super::front_functions::{FrontFrame, FrontLine};
 use super::least_squares::{Column, LeastSquares};
 use super::settings::{CollocationWeight, ConstrainedMlsSettings};
 use super::taylor_basis::TaylorBasis;
+use super::tip_functions::MOST_FUNCTIONS;
 use super::visible_nodes::VisibleNodes;
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
@@ -251,7 +252,8 @@ impl<const D: usize> ConstrainedMls<D> {
         Rank { is_complete, n_leading: if kept_constant { kept } else { 0 } }
     }
 
-    /// Adds the functions of a front.
+    /// Adds the functions of a front; in space also their products with the length along it, since the factors and the
+    /// axes of a front change along it.
     fn enrich(
         &self,
         frame: &FrontFrame<D>,
@@ -262,21 +264,35 @@ impl<const D: usize> ConstrainedMls<D> {
         fit: &mut LeastSquares<D>,
     ) {
         let jets = frame.jets(at, sight);
-        let scale = 1.0 / radius.sqrt();
+        let (scale, tangent) = (1.0 / radius.sqrt(), frame.tangent());
         // On the front itself only the value counts.
         let slope = if frame.polar(at, sight)[0] > CORE * radius { scale * radius } else { 0.0 };
-        let columns = jets.map(|jet| Column {
-            value: 0.0,
-            gradient: if slope > 0.0 { jet.gradient * slope } else { Vector::zeros() },
-            second_derivatives: if slope > 0.0 { jet.second_derivatives * (slope * radius) } else { Matrix::zeros() },
+        let columns: [Column<D>; 2 * MOST_FUNCTIONS] = std::array::from_fn(|k| {
+            if slope == 0.0 {
+                return Column::zero();
+            }
+            let jet = &jets[k % MOST_FUNCTIONS];
+            if k < MOST_FUNCTIONS {
+                let second_derivatives = jet.second_derivatives * (slope * radius);
+                return Column { value: 0.0, gradient: jet.gradient * slope, second_derivatives };
+            }
+            let mixed = tangent * jet.gradient.transpose();
+            let second_derivatives = (mixed + mixed.transpose()) * slope;
+            Column { value: 0.0, gradient: tangent * (jet.value * scale), second_derivatives }
         });
-        fit.add_columns(&columns, neighbors, |j, values| {
-            let f = frame.values(self.cloud().positions[j as usize], self.cloud().sights[j as usize]);
+        let count = if D == 3 { 2 * MOST_FUNCTIONS } else { MOST_FUNCTIONS };
+        fit.add_columns(&columns[..count], neighbors, |j, values| {
+            let place = self.cloud().positions[j as usize];
+            let f = frame.values(place, self.cloud().sights[j as usize]);
+            let along = (place - at).dot(&tangent) / radius;
             for (k, value) in values.iter_mut().enumerate() {
-                *value = (f[k] - jets[k].value) * scale;
+                *value = match k.checked_sub(MOST_FUNCTIONS) {
+                    None => (f[k] - jets[k].value) * scale,
+                    Some(k) => f[k] * scale * along,
+                };
             }
         });
-        fit.orthogonalize_twice(columns.len(), DEPENDENT_FRONT);
+        fit.orthogonalize_twice(count, DEPENDENT_FRONT);
     }
 
     /// Solves for the derivatives and writes them.

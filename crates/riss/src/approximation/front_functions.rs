@@ -33,6 +33,13 @@ pub struct Jet<const D: usize> {
 }
 
 impl<const D: usize> FrontFrame<D> {
+    /// Unit tangent of the front, `ahead` × `normal`; zero in the plane.
+    pub fn tangent(&self) -> Vector<D> {
+        let (a, n) = (&self.ahead, &self.normal);
+        let cross = |i: usize| a[(i + 1) % D] * n[(i + 2) % D] - a[(i + 2) % D] * n[(i + 1) % D];
+        if D == 3 { Vector::from_fn(|i, _| cross(i)) } else { Vector::zeros() }
+    }
+
     /// Distances from the front along the crack and normal to it [length]: `√(x1² + x2²)` is that from the arc.
     #[inline]
     pub fn plane(&self, at: Vector<D>) -> [f64; 2] {
@@ -136,10 +143,16 @@ impl<const D: usize> FrontLine<D> {
         let mut best: Option<(f64, FrontFrame<D>)> = None;
         for (a, b) in pairs {
             let e = b.position - a.position;
-            let t = ((at - a.position).dot(&e) / e.norm_squared()).clamp(0.0, 1.0);
-            let distance = (at - a.position - e * t).norm_squared();
+            // The chord's foot would jump where chords meet: the planes normal to the arc at both ends divide its length.
+            let ahead_of = |f: &FrontFrame<D>| {
+                (at - f.position).dot(&(e - f.ahead * e.dot(&f.ahead) - f.normal * e.dot(&f.normal)).normalize())
+            };
+            let (from, to) = (ahead_of(a), ahead_of(b));
+            let t = if from > to { (from / (from - to)).clamp(0.0, 1.0) } else { 0.5 };
+            let frame = between(a, b, t);
+            let distance = (at - frame.position).norm_squared();
             if best.is_none_or(|(least, _)| distance < least) {
-                best = Some((distance, between(a, b, t)));
+                best = Some((distance, frame));
             }
         }
         best.map(|(_, frame)| frame)

@@ -19,6 +19,13 @@ pub struct Column<const D: usize> {
     pub second_derivatives: Matrix<D>,
 }
 
+impl<const D: usize> Column<D> {
+    /// A function of which nothing is known at the center.
+    pub fn zero() -> Self {
+        Self { value: 0.0, gradient: Vector::zeros(), second_derivatives: Matrix::zeros() }
+    }
+}
+
 /// A fit: neighbors are rows, functions of the basis columns.
 #[derive(Clone, Debug, Default)]
 pub struct LeastSquares<const D: usize> {

@@ -84,12 +84,8 @@ pub fn front_integrals<const D: usize>(
 
 /// Axes of a front point as columns.
 fn axes<const D: usize>(frame: &FrontFrame<D>) -> Matrix<D> {
-    let (a, n) = (&frame.ahead, &frame.normal);
-    Matrix::from_fn(|i, j| match j {
-        0 => a[i],
-        1 => n[i],
-        _ => a[(i + 1) % D] * n[(i + 2) % D] - a[(i + 2) % D] * n[(i + 1) % D],
-    })
+    let columns = [frame.ahead, frame.normal, frame.tangent()];
+    Matrix::from_fn(|i, j| columns[j][i])
 }
 
 /// Interactions with modes I to III, and the solution with itself.

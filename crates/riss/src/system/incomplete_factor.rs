@@ -294,7 +294,7 @@ mod tests {
         let x: Vec<f64> = (0..18).map(|i| (i as f64).cos()).collect();
         let (mut right, mut found) = (vec![0.0; 18], vec![0.0; 18]);
         matrix.multiply(&x, &mut right);
-        IncompleteFactor::new(&matrix, vec![0..6]).solve(&right, &mut found);
+        IncompleteFactor::new(&matrix, std::iter::once(0..6).collect()).solve(&right, &mut found);
         assert!(found.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?}");
     }
 }

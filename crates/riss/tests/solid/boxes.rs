@@ -119,7 +119,7 @@ impl<const D: usize> Box<D> {
     }
 }
 
-fn push<const D: usize>(
+pub fn push<const D: usize>(
     cloud: &mut Cloud<D>,
     p: Vector<D>,
     spacing: f64,

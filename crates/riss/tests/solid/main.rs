@@ -5,4 +5,5 @@ mod cavity;
 mod convergence;
 mod near_tip;
 mod patch;
+mod penny;
 mod solver;
