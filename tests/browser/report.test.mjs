@@ -89,7 +89,7 @@ test("the report shows what results.json says", () => withReport(grown, {}, asyn
   assert.equal(rows.length, tips.length);
   tips.forEach(({ step, tip }, k) => {
     const cell = (name) => Number(rows[k][columns.indexOf(name)]);
-    for (const [name, value] of [["step", step.step], ["cycles N", step.cycles], ["K_I", tip.K_I], ["K_II", tip.K_II], ["± K", tip.K_uncertainty], ["J", tip.J]]) {
+    for (const [name, value] of [["step", step.step], ["cycles N", step.cycles], ["K_I [MPa√mm]", tip.K_I], ["K_II [MPa√mm]", tip.K_II], ["± K [MPa√mm]", tip.K_uncertainty], ["J [N/mm]", tip.J]]) {
       assert.equal(cell(name), value, `${name} in row ${k}`);
     }
   });
@@ -143,8 +143,8 @@ test("sliders and choices change the picture", () => withReport(grown, {}, async
   await change("the slider of the steps", async () => { await setSlider(page, "step", 1); await untilStep(page, 1); });
   assert.equal(await stepShown(page), "1");
   await change("the deformation", () => setSlider(page, "deformation", 3));
-  await change("the quantity", () => page.selectOption("#quantity", { label: "stress yy" }));
-  assert.equal(await page.locator("#legend-title").textContent(), "stress yy");
+  await change("the quantity", () => page.selectOption("#quantity", { label: "stress yy [MPa]" }));
+  assert.equal(await page.locator("#legend-title").textContent(), "stress yy [MPa]");
   await change("the range", () => page.selectOption("#range", "full"));
   await change("bands", () => page.check("#bands"));
   await change("zoom", () => page.click("#zoom-in"));
@@ -194,7 +194,7 @@ test("tables can be copied with all digits", () => withReport(grown, { permissio
   await page.getByText("Copied").waitFor();
   const lines = (await page.evaluate(() => navigator.clipboard.readText())).trim().split("\n").map((l) => l.split("\t"));
   const [tip] = results(grown).steps[0].cracks[0].tips;
-  assert.equal(Number(lines[1][lines[0].indexOf("K_I")]), tip.K_I);
+  assert.equal(Number(lines[1][lines[0].indexOf("K_I [MPa√mm]")]), tip.K_I);
 }));
 
 for (const folder of [grown, still]) {
@@ -238,4 +238,27 @@ test("without DecompressionStream the report says so and shows the rest", async 
   assert.match(await page.locator("#map-note").textContent(), /cannot unpack fields/);
   assert.ok((await page.locator("#history tbody tr").count()) > 0);
   await context.close();
+});
+
+test("units stand at every axis, and all settings are listed", async () => {
+  await withReport(grown, {}, async (page) => {
+    assert.equal(await page.locator("#legend-title").textContent(), "von Mises stress [MPa]");
+    const head = await page.locator("#tips th").allTextContents();
+    for (const title of ["x [mm]", "K_I [MPa√mm]", "J [N/mm]", "da/dN [mm/cycle]"]) assert.ok(head.includes(title), head.join());
+    assert.match(await page.locator("#about").textContent(), /unitsmm, N, MPa/);
+    assert.match(await page.locator("#curve-y").textContent(), /growth per cycle \[mm\/cycle\]/);
+    const rows = await page.locator("#settings-table tbody tr").allTextContents();
+    // Said by the case, a default, and one that the analysis chooses.
+    for (const row of ["growth.steps4", "approximation.basislinear", "nodes.layout.graded.spacingautomatic"]) {
+      assert.ok(rows.includes(row), `${row} in ${rows.join("\n")}`);
+    }
+  });
+});
+
+test("without units nothing is invented", async () => {
+  await withReport(still, {}, async (page) => {
+    assert.equal(await page.locator("#legend-title").textContent(), "von Mises stress");
+    assert.ok((await page.locator("#tips th").allTextContents()).includes("K_I"));
+    assert.ok(!(await page.locator("#about").textContent()).includes("units"));
+  });
 });

@@ -4,9 +4,12 @@
 //! [`mod@reference`] turns the JSON schema of the case file into a page of the book, [`tidy`] checks the manners of the code.
 
 pub mod bench;
+pub mod calibrate;
 pub mod ci;
+pub mod dist;
 pub mod docs;
 pub mod expected;
+pub mod gallery;
 pub mod python;
 pub mod reference;
 pub mod tidy;

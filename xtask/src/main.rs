@@ -1,14 +1,16 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
-use xtask::{bench, ci, docs, python, tidy, verify};
+use xtask::{bench, calibrate, ci, dist, docs, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
 
   ci      everything that continuous integration runs: format, clippy, tests, documentation, Python
   tidy    layers, headers, citations, names, file length, case folders
   verify  runs every case and compares it with its reference values; writes a table; grows random plates
-  docs    writes the generated page of the book, and builds the book where mdbook is installed
+  calibrate  compares the error bars of stress intensity factors with the errors in many bodies
+  dist    builds one static program for Linux and a Python wheel into `target/dist`
+  docs    writes the generated pages of the book, and builds the book where mdbook is installed
   python  builds the Python package and tests it, in an environment under `target`
   bench   runs the benchmarks; further words go to `cargo bench`";
 
@@ -22,6 +24,8 @@ fn main() -> ExitCode {
         ("ci", []) => ci::run_all(),
         ("tidy", []) => tidy::run(),
         ("verify", names) => verify::run(names),
+        ("calibrate", []) => calibrate::run(),
+        ("dist", []) => dist::run_all(),
         ("docs", []) => docs::run(),
         ("bench", rest) => bench::run(rest),
         ("python", []) => python::test(),

@@ -1,7 +1,7 @@
 //! `cargo xtask python`: builds the wheel, installs it into an environment of its own and runs the tests in Python.
 
 use crate::{Outcome, cargo, root, run, target_dir};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What builds and checks the package; its own needs follow from `pyproject.toml`.
@@ -10,13 +10,8 @@ const TOOLS: [&str; 2] = ["pip>=23", "maturin>=1.9,<2"];
 /// Format, lints, types and tests, notebooks among them.
 pub fn test() -> Outcome {
     let package = root().join("crates").join("riss-py");
+    let python = environment()?;
     let environment = target_dir().join("python");
-    if !environment.exists() {
-        run(Command::new(interpreter()).args(["-m", "venv"]).arg(&environment))?;
-    }
-    let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
-    let python = bin.join("python");
-    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(TOOLS))?;
     let manifest = package.join("Cargo.toml");
     let build = target_dir().join("python-build");
     let cargo_in = |args: &[&str]| {
@@ -32,6 +27,17 @@ pub fn test() -> Outcome {
     run(in_package(&python, &package).args(["-m", "ruff", "check", "--quiet", "python", "tests"]))?;
     run(in_package(&python, &package).args(["-m", "mypy", "python/riss"]))?;
     run(in_package(&python, &package).args(["-m", "pytest", "--quiet"]))
+}
+
+/// The Python of an environment under `target` that has the tools.
+pub(crate) fn environment() -> Result<PathBuf, String> {
+    let environment = target_dir().join("python");
+    if !environment.exists() {
+        run(Command::new(interpreter()).args(["-m", "venv"]).arg(&environment))?;
+    }
+    let python = environment.join(if cfg!(windows) { "Scripts" } else { "bin" }).join("python");
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(TOOLS))?;
+    Ok(python)
 }
 
 fn in_package(python: &Path, package: &Path) -> Command {

@@ -1,5 +1,6 @@
 //! `riss check`.
 
+use crate::claim::Claim;
 use crate::table::number;
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results, solid};
 use clap::Args;
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 
 /// Arguments of `riss check`.
 #[derive(Args)]
+#[command(after_help = "Examples:\n  riss check case.toml\n  riss check case.toml --set crack[0].path[1]=[40,100]")]
 pub struct CheckArguments {
     /// Case file
     pub case: PathBuf,
@@ -44,7 +46,7 @@ pub fn check(arguments: &CheckArguments) -> u8 {
     crate::print(&line("nodes", discrete.approximation.nodes().len().to_string()));
     crate::print(&line("cells", format!("{} with {n_points} integration points", discrete.cells.len())));
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    match results::prepare(&dir).and_then(|()| results::write_picture(&dir, &case.model, &discrete)) {
+    match Claim::of(&dir).and_then(|_claim| results::write_picture(&dir, &case.model, &discrete)) {
         Ok(path) => {
             crate::print(&line("picture", path.display().to_string()));
             DONE

@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 
 /// Arguments of `riss compare`.
 #[derive(Args)]
+#[command(
+    after_help = "Examples:\n  riss compare coarse.riss-out fine.riss-out\n  riss compare case.toml case.toml --set approximation.basis=quadratic\n  riss compare before.riss-out after.riss-out --K 0.5 --path 0.1 --json"
+)]
 pub struct CompareArguments {
     /// First run: a folder of results, or a case to run now
     #[arg(value_name = "A")]

@@ -1,7 +1,8 @@
 //! Problems of a case, drawn into its text on a terminal, one plain line each elsewhere.
 
-use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, NamedSource, Severity, SourceCode};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, Severity, SourceCode};
 use riss::case::{Case, CaseErrors, Origin, Problem, SolidCase};
+use std::ffi::OsStr;
 use std::fmt;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -37,13 +38,17 @@ fn show(problem: &Problem, place: &str, file: &Path, text: &str, severity: Sever
     if has_place && std::io::stderr().is_terminal() {
         let source = NamedSource::new(file.display().to_string(), text.to_string()).with_language("TOML");
         let drawn = Drawn { problem, source, severity };
-        let mut page = String::new();
-        if GraphicalReportHandler::new().render_report(&mut page, &drawn).is_ok() {
+        if let Some(page) = drawn.page(theme(std::env::var_os("NO_COLOR").as_deref())) {
             eprint!("{page}");
             return;
         }
     }
     eprintln!("{place}: {word}: {problem}");
+}
+
+/// Colors, unless `NO_COLOR` is set to anything (no-color.org); miette alone would take `NO_COLOR=0` for a wish for them.
+fn theme(no_color: Option<&OsStr>) -> GraphicalTheme {
+    if no_color.is_some_and(|v| !v.is_empty()) { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() }
 }
 
 /// A problem as miette draws it.
@@ -52,6 +57,14 @@ struct Drawn<'a> {
     problem: &'a Problem,
     source: NamedSource<String>,
     severity: Severity,
+}
+
+impl Drawn<'_> {
+    fn page(&self, theme: GraphicalTheme) -> Option<String> {
+        let mut page = String::new();
+        GraphicalReportHandler::new_themed(theme).render_report(&mut page, self).ok()?;
+        Some(page)
+    }
 }
 
 impl fmt::Display for Drawn<'_> {
@@ -80,5 +93,25 @@ impl Diagnostic for Drawn<'_> {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.problem.span.clone()?;
         Some(Box::new(std::iter::once(LabeledSpan::new(Some("here".into()), span.start, span.len()))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colors_give_way_to_no_color() {
+        let errors = Case::parse("rigid_motion = 5\n", "case.toml".as_ref(), &[]).expect_err("a bad case");
+        let problem = errors.problems.iter().find(|p| p.span.is_some()).expect("one has a place");
+        let page = |no_color: Option<&str>| {
+            let source = NamedSource::new("case.toml", errors.text.clone());
+            let drawn = Drawn { problem, source, severity: Severity::Error };
+            drawn.page(theme(no_color.map(OsStr::new))).expect("drawn")
+        };
+        let escape = '\u{1b}';
+        assert!(page(None).contains(escape) && page(Some("")).contains(escape));
+        assert!(!page(Some("1")).contains(escape) && !page(Some("0")).contains(escape));
+        assert!(page(Some("1")).contains("rigid_motion"));
     }
 }

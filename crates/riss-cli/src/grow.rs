@@ -3,7 +3,7 @@
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::table::{self, number};
-use crate::{DONE, STOPPED};
+use crate::{DONE, STOPPED, interrupt};
 use riss::analysis::{
     GrowthEnd, GrowthEndKind, GrowthSettings, GrowthState, Observer, RefinementRecord, Stage, StaticResult, StepRecord,
     TipStatus, Warning, crack_growth,
@@ -29,9 +29,18 @@ pub enum Speech {
     Table,
     /// The results as JSON.
     Json,
+    /// Nothing; errors return.
+    Nothing,
 }
 
-/// Grows the cracks of a case; returns the exit code.
+/// What growth came to.
+pub struct Followed {
+    end: GrowthEnd,
+    last: Option<StaticResult>,
+    files: Vec<PathBuf>,
+}
+
+/// Grows the cracks of a case and says how; returns the exit code.
 pub fn grow(
     case: &Case,
     growth: &GrowthSettings,
@@ -40,38 +49,59 @@ pub fn grow(
     progress: Progress,
     speech: Speech,
 ) -> u8 {
-    let Beginning { writer, state } = beginning;
-    let fields = case.output.fields;
-    let mut watch = Watch { case, writer, progress, speech, fields, last: None, error: None, files: vec![] };
-    if speech == Speech::Table {
-        crate::print(&format!("{}\n", case.model.title));
-    }
-    let outcome = crack_growth(&case.model, &case.settings, growth, state, &mut watch);
-    watch.progress.finish();
-    if let Some(e) = watch.error {
-        eprintln!("error: cannot write the results to {}: {}", dir.display(), results::reason(&e));
-        return STOPPED;
-    }
-    let end = match outcome {
-        Ok(Some(end)) => end,
-        Ok(None) => return STOPPED,
-        Err(e) => {
-            eprintln!("error: {e}");
+    let followed = match follow(case, growth, beginning, dir, progress, speech) {
+        Ok(followed) => followed,
+        Err(message) => {
+            eprintln!("error: {message}");
             return STOPPED;
         }
     };
     match speech {
         Speech::Table => {
-            let last = watch.last.as_ref().map_or(String::new(), table::summary);
-            let files: String = watch.files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
-            crate::print(&format!("\n{last}\ngrowth ended: {}\n\n{files}", end.reason));
+            let last = followed.last.as_ref().map_or(String::new(), table::summary);
+            let files: String = followed.files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
+            crate::print(&format!("\n{last}\ngrowth ended: {}\n\n{files}", followed.end.reason));
         }
         Speech::Json => {
             let text = std::fs::read_to_string(dir.join(riss::output::RESULTS_FILE)).unwrap_or_default();
             crate::print(&text);
         }
+        Speech::Nothing => {}
     }
-    exit_code(&end)
+    exit_code(&followed.end)
+}
+
+/// Grows the cracks of a case, writing every step.
+///
+/// # Errors
+/// Why there is no end.
+pub fn follow(
+    case: &Case,
+    growth: &GrowthSettings,
+    beginning: Beginning,
+    dir: &Path,
+    progress: Progress,
+    speech: Speech,
+) -> Result<Followed, String> {
+    let Beginning { writer, state } = beginning;
+    let fields = case.output.fields;
+    let mut watch = Watch { case, writer, progress, speech, fields, last: None, error: None, files: vec![] };
+    if speech == Speech::Table {
+        crate::print(&format!("{}\n{}", case.model.title, table::units_line(case.units.as_ref())));
+    }
+    let outcome = crack_growth(&case.model, &case.settings, growth, state, &mut watch);
+    watch.progress.finish();
+    if let Some(e) = watch.error {
+        return Err(format!("cannot write the results to {}: {}", dir.display(), results::reason(&e)));
+    }
+    match outcome {
+        Ok(Some(end)) => Ok(Followed { end, last: watch.last, files: watch.files }),
+        Ok(None) => {
+            let step = watch.last.map_or(0, |l| l.step.step);
+            Err(format!("stopped after step {step}, which is written; riss run --resume {} goes on", dir.display()))
+        }
+        Err(e) => Err(e.to_string()),
+    }
 }
 
 fn exit_code(end: &GrowthEnd) -> u8 {
@@ -133,7 +163,8 @@ impl Observer for Watch<'_> {
         match written {
             Ok(files) => {
                 self.files = files;
-                ControlFlow::Continue(())
+                let is_asked = interrupt::is_asked() && result.step.end.is_none();
+                if is_asked { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             }
             Err(e) => {
                 self.error = Some(e);

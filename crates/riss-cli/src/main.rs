@@ -1,11 +1,19 @@
-//! The riss program: `run`, `check`, `compare`, `report`, `export`, `shape`, `schema`, `new`.
+//! The riss program: `run`, `check`, `compare`, `converge`, `report`, `export`, `shape`, `schema`, `new`, `import`,
+//! `cases`, `completions`, `man`.
 
+mod batch;
+mod cases;
 mod check;
+mod claim;
 mod compare;
+mod converge;
 mod desktop;
 mod diagnostics;
 mod export;
 mod grow;
+mod import;
+mod interrupt;
+mod manual;
 mod new;
 mod progress;
 mod report;
@@ -15,6 +23,7 @@ mod run;
 mod schema;
 mod shape;
 mod solid;
+mod sweep;
 mod table;
 
 use clap::{Parser, Subcommand};
@@ -33,8 +42,10 @@ const DIFFERENT: u8 = 3;
 /// Cracks in solids with meshfree methods: stress intensity factors, J, T-stress and crack growth of a case file.
 #[derive(Parser)]
 #[command(
+    name = "riss",
     version,
-    after_help = "Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage, 3 compared runs differ."
+    after_help = "Examples:\n  riss new case.toml\n  riss run case.toml --open\n  riss cases\n  riss COMMAND --help\n\n\
+        Exit codes: 0 done, 1 the analysis failed or stopped early, 2 bad case or usage, 3 compared runs differ."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -49,6 +60,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Says how far the crack paths and stress intensity factors of two runs are apart
     Compare(compare::CompareArguments),
+    /// Solves on coarser and finer nodes and says where K goes, and how fast
+    Converge(converge::ConvergeArguments),
     /// Makes report.html again from a folder of results
     Report(report::ReportArguments),
     /// Writes the cracks or their stress intensity factors for another program
@@ -56,13 +69,23 @@ enum Command {
     /// Draws the weight and the shape function of a node
     Shape(shape::ShapeArguments),
     /// Prints the JSON Schema of the case file
+    #[command(after_help = "Example: riss schema > riss.schema.json")]
     Schema,
     /// Writes a commented case to start from
+    #[command(after_help = "Examples:\n  riss new\n  riss new plate.toml")]
     New {
         /// File to write; an existing one is left alone
         #[arg(default_value = "case.toml")]
         file: PathBuf,
     },
+    /// Prints a case with the body, material, supports and loads of an Abaqus or CalculiX input file
+    Import(import::ImportArguments),
+    /// Lists the gallery of ready cases, or copies one
+    Cases(cases::CasesArguments),
+    /// Prints the script that completes commands in a shell
+    Completions(manual::CompletionsArguments),
+    /// Prints the manual page
+    Man(manual::ManArguments),
 }
 
 fn main() -> ExitCode {
@@ -71,11 +94,16 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Converge(arguments) => converge::run(&arguments),
         Command::Report(arguments) => report::write(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Shape(arguments) => shape::shape(&arguments),
         Command::Schema => schema::print(),
         Command::New { file } => new::write(&file),
+        Command::Import(arguments) => import::import(&arguments),
+        Command::Cases(arguments) => cases::cases(&arguments),
+        Command::Completions(arguments) => manual::completions(&arguments),
+        Command::Man(arguments) => manual::man(&arguments),
     };
     ExitCode::from(code)
 }

@@ -23,21 +23,14 @@ impl RunRecord {
     pub fn info(&self, case: &Case, status: RunStatus) -> RunInfo {
         RunInfo {
             title: case.model.title.clone(),
-            method: "element-free-galerkin".into(),
+            method: case.settings.method.name().into(),
+            units: case.units.clone(),
             status,
             wall_time_s: self.wall_time_s,
             stage_time_s: self.stage_time_s.clone(),
             peak_memory_bytes: self.peak_memory_bytes,
         }
     }
-}
-
-/// Makes the folder for results and tries to write into it.
-pub fn prepare(dir: &Path) -> io::Result<()> {
-    std::fs::create_dir_all(dir)?;
-    let trial = dir.join(format!(".riss.{}.tmp", std::process::id()));
-    std::fs::write(&trial, b"")?;
-    std::fs::remove_file(trial)
 }
 
 /// What the system says, in words for the usual cases.
@@ -72,6 +65,7 @@ pub fn source(case: &Case) -> RunSource {
         platform: format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
         threads: rayon::current_num_threads(),
         started_unix_s: since_1970.as_secs(),
+        settings: case.effective_settings(),
     }
 }
 
@@ -93,11 +87,15 @@ pub fn json(case: &Case, run: &RunRecord, result: &StaticResult) -> String {
     results_json(&run.info(case, RunStatus::Done), result)
 }
 
-/// `NAME.riss-out` in the current folder; NAME is the case file's, or its folder's if the file is just case.toml.
+/// `NAME.riss-out` in the current folder.
 pub fn default_folder(case: &Path) -> PathBuf {
+    PathBuf::from(format!("{}.riss-out", name(case)))
+}
+
+/// Name of a case: the case file's, or its folder's if the file is just case.toml.
+pub fn name(case: &Path) -> String {
     let path = case.canonicalize().unwrap_or_else(|_| case.to_path_buf());
     let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
-    let name = if stem == "case" { folder.unwrap_or(stem) } else { stem };
-    PathBuf::from(format!("{name}.riss-out"))
+    if stem == "case" { folder.unwrap_or(stem) } else { stem }
 }

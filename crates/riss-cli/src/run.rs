@@ -1,29 +1,44 @@
 //! `riss run`.
 
+use crate::claim::Claim;
 use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::{self, Resumed};
-use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, solid, table};
+use crate::sweep::Sweep;
+use crate::{BAD_CASE, DONE, STOPPED, batch, desktop, diagnostics, interrupt, solid, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
 use riss::case::{AnyCase, Case};
 use std::io;
 use std::path::{Path, PathBuf};
 
+const EXAMPLES: &str = "Examples:
+  riss run case.toml
+  riss run case.toml --set material.young=70e3 --open
+  riss run left.toml right.toml --out both
+  riss run case.toml --sweep 'crack[0].path[1][0]=10..50:10'
+  riss run case.toml --sweep a=10..50:10 --sweep approximation.basis=linear,quadratic
+  riss run --resume case.riss-out --set growth.steps=20";
+
 /// Arguments of `riss run`.
 #[derive(Args)]
+#[command(after_help = EXAMPLES)]
 pub struct RunArguments {
-    /// Case file; not needed with --resume
-    #[arg(required_unless_present = "resume")]
-    pub case: Option<PathBuf>,
+    /// Case files; several run side by side. Not needed with --resume
+    #[arg(required_unless_present = "resume", value_name = "CASE")]
+    pub cases: Vec<PathBuf>,
+    /// Runs once for each value of a key or a parameter: FROM..TO:STEP or a list; several make all combinations
+    #[arg(long = "sweep", value_name = "KEY=VALUES", conflicts_with = "resume", value_parser = Sweep::parse)]
+    pub sweeps: Vec<Sweep>,
     /// Goes on with the growth in a folder of results, with the growth settings that the case has now
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     pub resume: Option<PathBuf>,
     /// Step to go on from [default: the last that is finished]
     #[arg(long, value_name = "N", requires = "resume")]
     pub from_step: Option<usize>,
-    /// Folder for the results [default: NAME.riss-out in the current folder]
+    /// Folder for the results [default: NAME.riss-out in the current folder; NAME.riss-sweep for a sweep, riss-out for
+    /// several cases, with a folder for each run]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Overrides a key of the case, such as material.young=70e9; may be given several times
@@ -35,8 +50,8 @@ pub struct RunArguments {
     /// Prints the results as JSON instead of a table
     #[arg(long)]
     pub json: bool,
-    /// Opens the report in the browser of the desktop
-    #[arg(long)]
+    /// Opens the report in the browser of the desktop; not for several runs
+    #[arg(long, conflicts_with = "sweeps")]
     pub open: bool,
     /// Shows no progress and no notes
     #[arg(long, short)]
@@ -50,13 +65,23 @@ pub fn run(arguments: &RunArguments) -> u8 {
     {
         return refuse(&format!("cannot start {n} threads: {e}"));
     }
+    match arguments.cases.len() {
+        0 | 1 if arguments.sweeps.is_empty() => run_one(arguments),
+        0 | 1 => batch::run(arguments),
+        _ if arguments.resume.is_some() => refuse("--resume goes on with one case"),
+        _ if arguments.open => refuse("--open shows one run; open the report in the folder of the run that you want"),
+        _ => batch::run(arguments),
+    }
+}
+
+fn run_one(arguments: &RunArguments) -> u8 {
     let known = match arguments.resume.as_deref().map(Resumed::read).transpose() {
         Ok(known) => known,
         Err(message) => return refuse(&message),
     };
     let overrides = known.as_ref().map_or(vec![], |k| k.overrides.clone());
     let overrides: Vec<String> = overrides.into_iter().chain(arguments.overrides.iter().cloned()).collect();
-    let path = arguments.case.clone().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
+    let path = arguments.cases.first().cloned().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
     let case = match AnyCase::read(&path, &overrides) {
         Ok(AnyCase::Plane(case)) => *case,
         Ok(AnyCase::Solid(_)) if arguments.resume.is_some() => return refuse("a solid has no growth to go on with"),
@@ -77,9 +102,11 @@ pub fn run(arguments: &RunArguments) -> u8 {
         None => arguments.out.clone().unwrap_or_else(|| results::default_folder(&path)),
     };
     // Before hours of work, not after.
-    if let Err(e) = results::prepare(&dir) {
-        return cannot_write(&dir, &e);
-    }
+    let _claim = match Claim::of(&dir) {
+        Ok(claim) => claim,
+        Err(e) => return cannot_write(&dir, &e),
+    };
+    interrupt::listen();
     let code = analyze(arguments, &case, known, &dir);
     if arguments.open && dir.join(riss::output::REPORT_FILE).is_file() {
         desktop::open(&dir.join(riss::output::REPORT_FILE));
@@ -134,7 +161,8 @@ fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, r
         crate::print(&results::json(case, run, result));
     } else {
         let size = format!("{} nodes, {} unknowns, {:.2} s", result.n_nodes, result.n_unknowns, run.wall_time_s);
-        crate::print(&format!("{}\n{size}\n\n{}", case.model.title, table::summary(result)));
+        let (title, units) = (&case.model.title, table::units_line(case.units.as_ref()));
+        crate::print(&format!("{title}\n{size}\n{units}\n{}", table::summary(result)));
     }
     match written {
         Ok(files) => {

@@ -1,5 +1,6 @@
 //! `riss shape`.
 
+use crate::claim::Claim;
 use crate::table::number;
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
 use clap::{ArgGroup, Args};
@@ -11,7 +12,10 @@ use std::path::PathBuf;
 
 /// Arguments of `riss shape`.
 #[derive(Args)]
-#[command(group = ArgGroup::new("which").required(true))]
+#[command(
+    group = ArgGroup::new("which").required(true),
+    after_help = "Examples:\n  riss shape case.toml --at 30,100\n  riss shape case.toml --node 57 --set approximation.dilation=3"
+)]
 pub struct ShapeArguments {
     /// Case file
     pub case: PathBuf,
@@ -65,7 +69,7 @@ pub fn shape(arguments: &ShapeArguments) -> u8 {
     let radius = number(function.support_radius);
     crate::print(&format!("node {node} at ({}, {}), support radius {radius}\n", number(p.x), number(p.y)));
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
-    match results::prepare(&dir).and_then(|()| write_shape_pictures(&dir, &case.model, &function)) {
+    match Claim::of(&dir).and_then(|_claim| write_shape_pictures(&dir, &case.model, &function)) {
         Ok(paths) => {
             crate::print(&paths.iter().map(|p| format!("wrote {}\n", p.display())).collect::<String>());
             DONE

@@ -1,5 +1,6 @@
 //! `riss run` and `riss check` of solids.
 
+use crate::claim::Claim;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::number;
@@ -8,6 +9,7 @@ use riss::analysis::{FrontRecord, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
 use riss::output::whole_file::write_whole;
 use riss::output::{RunInfo, RunStatus, SolidResults, solid_picture, write_solid_cloud, write_solid_results};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Solves a solid; returns the exit code.
@@ -15,10 +17,10 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
     if !arguments.quiet {
         diagnostics::report_solid_notes(case);
     }
-    if let Err(e) = results::prepare(dir) {
-        eprintln!("error: cannot write the results to {}: {}", dir.display(), results::reason(&e));
-        return STOPPED;
-    }
+    let _claim = match Claim::of(dir) {
+        Ok(claim) => claim,
+        Err(e) => return cannot_write("the results", dir, &e),
+    };
     let mut progress = Progress::new(arguments.quiet);
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();
@@ -32,6 +34,7 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
     let info = RunInfo {
         title: case.model.title.clone(),
         method: "collocation".into(),
+        units: None,
         status: RunStatus::Done,
         wall_time_s,
         stage_time_s: std::mem::take(&mut progress.stage_time_s),
@@ -52,10 +55,7 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
             }
             DONE
         }
-        Err(e) => {
-            eprintln!("error: cannot write the results to {}: {}", dir.display(), results::reason(&e));
-            STOPPED
-        }
+        Err(e) => cannot_write("the results", dir, &e),
     }
 }
 
@@ -102,8 +102,8 @@ pub fn check(case: &SolidCase, out: Option<PathBuf>) -> u8 {
     crate::print(&line("nodes", format!("{}, {} pairs on crack faces", nodes.cloud.len(), nodes.pairs.len())));
     let dir = out.unwrap_or_else(|| results::default_folder(&case.path));
     let picture = dir.join("nodes.svg");
-    let drawn = results::prepare(&dir)
-        .and_then(|()| write_whole(&picture, solid_picture(&case.model, &nodes.cloud).as_bytes()))
+    let drawn = Claim::of(&dir)
+        .and_then(|_| write_whole(&picture, solid_picture(&case.model, &nodes.cloud).as_bytes()))
         .and_then(|()| write_solid_cloud(&dir, &nodes.cloud));
     match drawn {
         Ok(path) => {
@@ -111,11 +111,13 @@ pub fn check(case: &SolidCase, out: Option<PathBuf>) -> u8 {
             crate::print(&line("cloud", path.display().to_string()));
             DONE
         }
-        Err(e) => {
-            eprintln!("error: cannot write a picture to {}: {}", dir.display(), results::reason(&e));
-            STOPPED
-        }
+        Err(e) => cannot_write("a picture", &dir, &e),
     }
+}
+
+fn cannot_write(what: &str, dir: &Path, error: &io::Error) -> u8 {
+    eprintln!("error: cannot write {what} to {}: {}", dir.display(), results::reason(error));
+    STOPPED
 }
 
 /// A line of the description.

@@ -1,6 +1,7 @@
 //! Results on the terminal.
 
 use riss::analysis::{RefinementRecord, StaticResult, TipRecord};
+use riss::model::UnitNames;
 use std::fmt::Write;
 
 /// Tips, reactions and warnings as text.
@@ -28,6 +29,12 @@ pub fn summary(result: &StaticResult) -> String {
         writeln!(text, "\nwarning: {}", warning.message).expect("a string takes all");
     }
     text
+}
+
+/// The units of a case as a line, if it says them.
+pub fn units_line(units: Option<&UnitNames>) -> String {
+    let line = |u: &UnitNames| format!("in {}, {}, {}; K in {}\n", u.length, u.force, u.stress, u.stress_intensity());
+    units.map_or(String::new(), line)
 }
 
 /// A solution on the way to an accuracy.

@@ -80,3 +80,24 @@ fn what_cannot_be_read_is_said() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("empty/results.json cannot be read"));
     assert_eq!(riss(&folder, &["compare", "nowhere.toml", "case.toml", "-q"]).status.code(), Some(2));
 }
+
+/// The same path and factors, along the same criterion: the methods differ in supports and domains.
+#[test]
+fn both_methods_agree() {
+    let folder = scratch("compare-methods");
+    let mut arguments = vec!["compare", "case.toml", "case.toml", "-q"];
+    let fixed = [
+        "method=\"cracking-particles\"",
+        "growth.criterion=\"maximum-circumferential-stress\"",
+        "growth.control=\"fixed\"",
+    ];
+    fixed.iter().for_each(|o| arguments.extend(["--set", o]));
+    let output = riss(&folder, &arguments);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(text.contains("path distance") && text.contains("K difference"), "{text}");
+    assert!(!text.contains("  0 %  "), "the runs differ: {text}");
+    // Along the force, its own choice, the way is another one.
+    let output = riss(&folder, &["compare", "case.toml", "case.toml", "-q", "--set", fixed[0], "--path", "0.01"]);
+    assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stdout));
+}

@@ -150,6 +150,7 @@ fn source(case: &riss::case::Case) -> RunSource {
         platform: format!("{} on {}, from Python", std::env::consts::OS, std::env::consts::ARCH),
         threads: rayon::current_num_threads(),
         started_unix_s: since_1970.as_secs(),
+        settings: case.effective_settings(),
     }
 }
 
@@ -203,7 +204,8 @@ impl Observer for Listener<'_> {
             };
             let info = RunInfo {
                 title: self.case.model.title.clone(),
-                method: "element-free-galerkin".into(),
+                method: self.case.settings.method.name().into(),
+                units: self.case.units.clone(),
                 status,
                 wall_time_s: self.clock.start.elapsed().as_secs_f64(),
                 stage_time_s: self.clock.stages.clone(),

@@ -32,7 +32,8 @@ impl Approximation {
             return Err(PyValueError::new_err("the step was not solved"));
         }
         let discrete = discretize(&step.model, &step.settings, &mut Silent).map_err(|e| error::of_analysis(&e))?;
-        let parameters = step.result.nodes.iter().map(|n| n.parameters).collect();
+        let of_nodes = step.result.nodes.iter().map(|n| n.parameters);
+        let parameters = of_nodes.chain(step.result.extra_parameters.iter().copied()).collect();
         Ok(Self { model: step.model.clone(), discrete, parameters })
     }
 

@@ -57,6 +57,9 @@ fn bench(c: &mut Criterion) {
         ("quadratic_quartic_30", Basis::Quadratic, EnrichmentKind::None, WeightFunction::QuarticSpline, 3.1),
         ("full_quartic_20", Basis::Linear, EnrichmentKind::IntrinsicFull, WeightFunction::QuarticSpline, 2.52),
         ("radial_quartic_20", Basis::Linear, EnrichmentKind::IntrinsicRadial, WeightFunction::QuarticSpline, 2.52),
+        ("extrinsic_full_20", Basis::Linear, EnrichmentKind::ExtrinsicFull, WeightFunction::QuarticSpline, 2.52),
+        ("extrinsic_radial_20", Basis::Linear, EnrichmentKind::ExtrinsicRadial, WeightFunction::QuarticSpline, 2.52),
+        ("extrinsic_mls_20", Basis::Linear, EnrichmentKind::ExtrinsicMls, WeightFunction::QuarticSpline, 2.52),
     ];
     for (name, basis, kind, function, radius) in cases {
         let mls = approximation(basis, kind, function, radius);

@@ -12,7 +12,7 @@ pub enum Quantity {
         crack: String,
         /// `start` or `end`.
         end: String,
-        /// `K_I`, `K_II`, `J`, `T` or `kink_angle_deg`.
+        /// `K_I`, `K_II`, `K_I_direct`, `K_II_direct`, `J`, `T` or `kink_angle_deg`.
         key: String,
         /// Step of the run; 0 without growth.
         step: usize,

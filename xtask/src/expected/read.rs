@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-const TIP_QUANTITIES: [&str; 5] = ["K_I", "K_II", "J", "T", "kink_angle_deg"];
+const TIP_QUANTITIES: [&str; 7] = ["K_I", "K_II", "K_I_direct", "K_II_direct", "J", "T", "kink_angle_deg"];
 const FRONT_QUANTITIES: [&str; 4] = ["K_I", "K_II", "K_III", "J"];
 const SCALARS: [&str; 2] = ["strain_energy", "energy_error"];
 

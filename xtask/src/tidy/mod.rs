@@ -6,6 +6,7 @@
 pub mod cases;
 pub mod citations;
 pub mod layers;
+pub mod links;
 pub mod source;
 pub mod words;
 
@@ -99,6 +100,7 @@ pub fn check(root: &Path) -> Findings {
         }
     }
     cases::check(root, &mut findings);
+    links::check(root, &mut findings);
     findings
 }
 

@@ -3,6 +3,8 @@
 use super::recovery::{Buffer, RecoveredStress};
 use crate::error::Result;
 use crate::integration::cells::as_usize;
+use crate::material::Elasticity;
+use crate::math::Vector2;
 use crate::model::Model;
 use crate::system::galerkin::{Scratch, cell_displacement_gradient, cell_gradients};
 use crate::system::{Discretization, Solution};
@@ -36,22 +38,78 @@ pub fn estimate_error(model: &Model, discrete: &Discretization, solution: &Solut
     let cells: Vec<(Vec<f64>, f64)> = (0..discrete.cells.len())
         .into_par_iter()
         .with_min_len(32)
-        .map_init(<(Scratch, Buffer)>::default, |(scratch, buffer), cell| {
-            cell_gradients(discrete, cell, scratch, None)?;
-            let nodes = discrete.cell_nodes.get(cell);
-            let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
-            let mut energy = 0.0;
-            let errors = points.iter().enumerate().map(|(q, point)| {
-                let gradient = cell_displacement_gradient(nodes, q, scratch, &solution.parameters);
-                let stress = material.stress(&gradient);
-                energy += 0.5 * point.weight * stress.dot(&gradient);
-                let difference = recovered.at(point.position, point.position, buffer)? - stress;
-                Ok(0.5 * point.weight * difference.dot(&material.strain(&difference)))
-            });
-            Ok((errors.collect::<Result<_>>()?, energy))
+        .map_init(Buffers::default, |buffers, cell| {
+            cell_errors(material, discrete, solution, &recovered, cell, buffers)
         })
         .collect::<Result<_>>()?;
     let energy = cells.iter().map(|c| c.1).sum();
     let points: Vec<f64> = cells.into_iter().flat_map(|c| c.0).collect();
     Ok(ErrorEstimate { error: points.iter().sum(), points, energy })
+}
+
+/// Squared energy norm of the estimated error in each of some disks, of given centers and radii [stress·length²].
+///
+/// # Errors
+/// Those of the shape functions.
+pub fn estimate_error_within(
+    model: &Model,
+    discrete: &Discretization,
+    solution: &Solution,
+    disks: &[(Vector2, f64)],
+) -> Result<Vec<f64>> {
+    let cells = &discrete.cells;
+    let points = |cell: usize| &cells.points[as_usize(&cells.point_ranges[cell])];
+    let is_in = |p: Vector2, disk: &(Vector2, f64)| (p - disk.0).norm() < disk.1;
+    let near: Vec<usize> = (0..cells.len())
+        .into_par_iter()
+        .filter(|&cell| points(cell).iter().any(|p| disks.iter().any(|d| is_in(p.position, d))))
+        .collect();
+    // A cell at the rim of a disk has points outside.
+    let reach = |&(center, radius): &(Vector2, f64)| {
+        let far = near.iter().flat_map(|&cell| {
+            let is_part = points(cell).iter().any(|p| is_in(p.position, &(center, radius)));
+            points(cell).iter().filter(move |_| is_part).map(|p| (p.position - center).norm())
+        });
+        (center, far.fold(radius, f64::max))
+    };
+    let reached: Vec<_> = disks.iter().map(reach).collect();
+    let recovered = RecoveredStress::within(model, discrete, solution, &reached)?;
+    let errors: Vec<(Vec<f64>, f64)> = near
+        .par_iter()
+        .with_min_len(8)
+        .map_init(Buffers::default, |buffers, &cell| {
+            cell_errors(&model.material, discrete, solution, &recovered, cell, buffers)
+        })
+        .collect::<Result<_>>()?;
+    let sum = |disk: &(Vector2, f64)| {
+        let pairs = near.iter().zip(&errors).flat_map(|(&cell, (errors, _))| points(cell).iter().zip(errors));
+        pairs.filter(|(p, _)| is_in(p.position, disk)).map(|(_, e)| e).sum()
+    };
+    Ok(disks.iter().map(sum).collect())
+}
+
+/// Buffers of one thread.
+type Buffers = (Scratch, Buffer);
+
+/// Error at each point of a cell, and the energy of the cell [stress·length²].
+fn cell_errors(
+    material: &Elasticity,
+    discrete: &Discretization,
+    solution: &Solution,
+    recovered: &RecoveredStress,
+    cell: usize,
+    (scratch, buffer): &mut Buffers,
+) -> Result<(Vec<f64>, f64)> {
+    cell_gradients(discrete, cell, scratch, None)?;
+    let nodes = discrete.cell_nodes.get(cell);
+    let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
+    let mut energy = 0.0;
+    let errors = points.iter().enumerate().map(|(q, point)| {
+        let gradient = cell_displacement_gradient(nodes, q, scratch, &solution.parameters);
+        let stress = material.stress(&gradient);
+        energy += 0.5 * point.weight * stress.dot(&gradient);
+        let difference = recovered.at(point.position, point.position, buffer)? - stress;
+        Ok(0.5 * point.weight * difference.dot(&material.strain(&difference)))
+    });
+    Ok((errors.collect::<Result<_>>()?, energy))
 }

@@ -28,12 +28,41 @@ impl<'a> RecoveredStress<'a> {
     /// # Errors
     /// Those of the shape functions.
     pub fn new(model: &Model, discrete: &'a Discretization, solution: &Solution) -> Result<Self> {
+        Self::of_nodes(model, discrete, solution, |_| true)
+    }
+
+    /// The same for use at the points of disks, each with its radius.
+    ///
+    /// # Errors
+    /// Those of the shape functions.
+    pub fn within(
+        model: &Model,
+        discrete: &'a Discretization,
+        solution: &Solution,
+        disks: &[(Vector2, f64)],
+    ) -> Result<Self> {
+        let nodes = discrete.approximation.nodes();
+        let reaches = |i: usize, disk: &(Vector2, f64)| {
+            (nodes.positions[i] - disk.0).norm() < disk.1 + nodes.support_radii[i].norm()
+        };
+        Self::of_nodes(model, discrete, solution, |i| disks.iter().any(|d| reaches(i, d)))
+    }
+
+    fn of_nodes(
+        model: &Model,
+        discrete: &'a Discretization,
+        solution: &Solution,
+        is_used: impl Fn(usize) -> bool + Sync,
+    ) -> Result<Self> {
         let wide = &discrete.approximation;
         let nodes = wide.nodes();
         let nodal = (0..nodes.len())
             .into_par_iter()
             .with_min_len(64)
             .map_init(Buffer::default, |(around, shape), i| {
+                if !is_used(i) {
+                    return Ok(Matrix2::zeros());
+                }
                 wide.evaluate(nodes.positions[i], nodes.sights[i], Derivatives::First, around, shape)?;
                 Ok(model.material.stress(&shape.gradient(&solution.parameters)))
             })
@@ -53,7 +82,8 @@ impl<'a> RecoveredStress<'a> {
         if self.fine.evaluate(at, sight, Derivatives::First, around, shape).is_err() {
             self.wide.evaluate(at, sight, Derivatives::First, around, shape)?;
         }
-        let pairs = shape.neighbors.iter().zip(&shape.values);
+        // The plain shape functions alone are a mean.
+        let pairs = shape.neighbors.iter().zip(&shape.values).filter(|(n, _)| (**n as usize) < self.nodal.len());
         Ok(pairs.fold(Matrix2::zeros(), |sum, (&n, &v)| sum + self.nodal[n as usize] * v))
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct AccuracySettings {
-    /// Largest error bar of `K_I` and `K_II` at every tip [% of their magnitude]: the spread over the integration domains, or
+    /// Largest error bar of `K_I` and `K_II` at every tip [% of their magnitude]: the bar of any solution, or
     /// what the last refinement lets expect of the next ones.
     #[serde(rename = "K_percent")]
     #[schemars(range(min = 0.0))]

@@ -35,7 +35,8 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
         })
         .collect::<Result<_>>()?;
     let stress: Vec<Matrix2> = samples.iter().map(|s| s.1).collect();
-    let mut nodal = vec![Matrix2::zeros(); discrete.n_nodes()];
+    // Additional functions add nothing to the mean.
+    let mut nodal = vec![Matrix2::zeros(); discrete.n_functions()];
     for (copy, node) in discrete.node_of_copy.iter().enumerate() {
         if let Some(node) = node {
             nodal[*node as usize] = stress[copy];

@@ -2,6 +2,7 @@
 
 use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
+use super::error_bars::widen_error_bars;
 use super::fields::sample_fields;
 use super::record::*;
 use super::refinement::refine;
@@ -92,6 +93,7 @@ pub(super) fn solve_step(
         refinements,
         fields,
         nodes: node_records.collect(),
+        extra_parameters: solution.parameters[nodes.len()..].to_vec(),
         integration_points: discrete.cells.points.iter().map(|p| (p.position, p.weight)).collect(),
         warnings: warnings.list,
     })
@@ -138,7 +140,8 @@ pub(super) fn solve_on(
         ));
     }
     warnings.observer.stage(Stage::Fracture);
-    let cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
+    let mut cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
+    widen_error_bars(model, &discrete, &solution, &mut cracks)?;
     Ok(Solved { discrete, solution, method, cracks })
 }
 
@@ -148,7 +151,7 @@ pub(super) fn solve_on(
 /// [`Error::NodeGeneration`] and [`Error::SingularMomentMatrix`].
 pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
-    let layered = generate(model, &settings.nodes)?;
+    let layered = generate(model, &settings.nodes, settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
@@ -164,7 +167,7 @@ pub fn discretize_at(
     observer: &mut dyn Observer,
 ) -> Result<Discretization> {
     observer.stage(Stage::Nodes);
-    let layered = generate_at(model, spacing, settings.nodes.star.as_ref())?;
+    let layered = generate_at(model, spacing, settings.nodes.star.as_ref(), settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
     Discretization::new(model, layered, &settings.approximation, &settings.integration)
 }
@@ -236,6 +239,10 @@ fn evaluate_tip(
 ) -> Result<TipRecord> {
     let view = TipView::new(model, id);
     let mut record = TipRecord::unknown(id.end, view.frame);
+    if !solution.tip_factors.is_empty() {
+        let place = model.tips().iter().position(|t| t.0 == id);
+        [record.k1_direct, record.k2_direct] = place.map_or([None; 2], |tip| solution.tip_factors[tip].map(Some));
+    }
     let radii = match view.radii(settings.fracture.domain, settings.fracture.radii.as_deref()) {
         Ok((radii, note)) => {
             note.into_iter().for_each(|n| warnings.add(n));
@@ -266,16 +273,19 @@ fn evaluate_tip(
     record.k1 = Some(k1);
     record.k2 = Some(k2);
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
-    record.j = Some(mean(|t| t.j));
+    let clear = view.clear_of_kinks(&radii, discrete.triangulation.spacing_at(view.frame.position));
+    // Faces that turn away hold energy that counts for J, and it is poor next to a kink.
+    record.j = Some(match clear == radii {
+        true => mean(|t| t.j),
+        false => {
+            let found = tip_integrals(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
+            found.iter().map(|t| t.j).sum::<f64>() / found.len() as f64
+        }
+    });
     record.t_stress = Some(mean(|t| t.t_stress));
-    // What it takes on loaded faces is not integrated.
-    if face_pressure.is_none() {
-        let clear = view.clear_of_kinks(&radii);
-        let forces =
-            configurational_forces(&view, &clear, &settings.fracture, &model.material, loads.body_force, &field)?;
-        let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
-        record.configurational_force = Some(sum / forces.len() as f64);
-    }
+    let forces = configurational_forces(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
+    let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
+    record.configurational_force = Some(sum / forces.len() as f64);
     record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)

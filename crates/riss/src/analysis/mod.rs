@@ -1,10 +1,13 @@
 //! Analyses: they join all the stages below and report to an [`Observer`].
 
 pub mod contact;
+pub mod convergence;
 pub mod crack_growth;
 pub mod energy;
+mod error_bars;
 pub mod fields;
 pub mod linear_static;
+pub mod method;
 pub mod node_function;
 pub mod record;
 pub mod refinement;
@@ -12,8 +15,10 @@ pub mod settings;
 pub mod solid_record;
 pub mod solid_static;
 
+pub use convergence::{ConvergenceStudy, Limit, converge};
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
+pub use method::Method;
 pub use node_function::{NodeFunction, nearest_node, sample_node_function};
 pub use record::*;
 pub use refinement::{Refined, solve_refined};

@@ -132,8 +132,13 @@ pub struct TipRecord {
     pub k1: Option<f64>,
     /// Mode II stress intensity factor [stress·√length].
     pub k2: Option<f64>,
-    /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
+    /// Error bar of both ([`error_bars`](super::error_bars)); with an accuracy to meet at least what the last refinement
+    /// lets expect of the next ones [stress·√length].
     pub k_uncertainty: Option<f64>,
+    /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
+    pub k1_direct: Option<f64>,
+    /// Mode II factor that was solved for as an unknown, with `extrinsic-mls` [stress·√length].
+    pub k2_direct: Option<f64>,
     /// J-integral [stress·length].
     pub j: Option<f64>,
     /// T-stress [stress].
@@ -166,6 +171,8 @@ impl TipRecord {
             k1: None,
             k2: None,
             k_uncertainty: None,
+            k1_direct: None,
+            k2_direct: None,
             j: None,
             t_stress: None,
             configurational_force: None,
@@ -303,6 +310,8 @@ pub struct StaticResult {
     pub fields: Fields,
     /// Positions of the nodes.
     pub nodes: Vec<NodeRecord>,
+    /// Parameters of the additional functions of enriched nodes [length].
+    pub extra_parameters: Vec<Vector2>,
     /// Integration points: position and integration weight.
     pub integration_points: Vec<(Vector2, f64)>,
     /// All warnings, in order.
@@ -323,6 +332,7 @@ impl StaticResult {
             refinements: vec![],
             fields: Fields::default(),
             nodes: vec![],
+            extra_parameters: vec![],
             integration_points: vec![],
             warnings: vec![],
         }

@@ -1,7 +1,7 @@
 //! Solves again and again, with finer nodes where the error is, until the accuracy that was asked for is met.
 //!
-//! The error bar of a stress intensity factor is its spread over the integration domains, or what follows from the change
-//! in the last refinement, whichever is larger. If a refinement leaves the share ρ of an error, a change of Δ leaves
+//! The error bar of a stress intensity factor is that of any solution ([`error_bars`](super::error_bars)), or what follows
+//! from the change in the last refinement, whichever is larger. If a refinement leaves the share ρ of an error, a change of Δ leaves
 //! `Δ ρ/(1-ρ)`. The factors converge no slower than the stress: ρ is that of its estimated error, the bar at least Δ.
 
 use super::energy::strain_energy;

@@ -1,5 +1,6 @@
 //! All numerical choices of an analysis.
 
+use super::method::Method;
 use crate::adaptivity::AccuracySettings;
 use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
@@ -10,6 +11,8 @@ use crate::system::{ConstraintMethod, LinearSolver};
 /// Numerical choices; the default gives stress intensity factors to better than 1 % on ordinary problems.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
+    /// Numerical method.
+    pub method: Method,
     /// Placement of nodes.
     pub nodes: NodeSettings,
     /// Shape functions.

@@ -2,6 +2,9 @@
 
 use super::detour::Jet;
 use super::discontinuity::through_void;
+use super::extra::Extra;
+use super::global_functions::{GlobalFunctions, GlobalRegion};
+use super::partition_of_unity::{ExtraFunctions, ExtraRegion};
 use super::settings::{EnrichmentKind, EnrichmentSettings, Ramp};
 use super::tip_functions::{LARGEST_TURN, MOST_FUNCTIONS, TipCoordinates, TipFunctions};
 use crate::crack::{CrackPath, End, EndKind, TipId};
@@ -28,12 +31,52 @@ const CUT_REACH: f64 = 2.0;
 /// Derivatives of the tip functions are held nearer to the tip than this, over the least support radius around it.
 const CORE: f64 = 1e-5;
 
-/// The enriched regions of a body, one at each tip; they do not overlap.
+/// The enriched regions of a body, one at each tip; they do not overlap unless the functions are those of tips.
 #[derive(Clone, Debug)]
 pub struct Enrichment {
     functions: TipFunctions,
+    form: Form,
     ramp: Ramp,
     regions: Vec<Region>,
+}
+
+/// How the functions enter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    /// In the basis [EFG, section 5.3].
+    Intrinsic,
+    /// Times the shape functions of nodes [EFG, section 5.2].
+    OfNodes,
+    /// As they are, less what moving least squares make of them [EFG, section 5.1].
+    OfTips,
+}
+
+impl Form {
+    /// Largest outer radius of the region around a tip, and that if nothing is said [length].
+    ///
+    /// - `clear`: where the functions begin to jump beside the crack
+    fn outer_radii(self, model: &Model, id: TipId, clear: f64) -> [f64; 2] {
+        let crack = &model.cracks[id.crack];
+        let sharp = first_sharp_kink(crack, id.end);
+        match self {
+            Self::Intrinsic | Self::OfNodes => {
+                let free = free_radius(model, id.crack, crack.end_position(id.end));
+                [half_way(model, id).min(CLEARANCE * clear), sharp.min(OUTER_SHARE * free)]
+            }
+            // Regions may overlap, and no node has functions to lose. The nodes have to make up for the ramp: the wider
+            // the better.
+            Self::OfTips => [clear, sharp.min(clear)],
+        }
+    }
+
+    /// Inner radius if nothing is said [length].
+    fn inner_radius(self, outer: f64) -> f64 {
+        match self {
+            Self::Intrinsic | Self::OfNodes => INNER_SHARE * outer,
+            Self::OfTips if outer.is_finite() => 0.0,
+            Self::OfTips => outer,
+        }
+    }
 }
 
 /// A disk around a tip.
@@ -42,6 +85,8 @@ struct Region {
     coordinates: TipCoordinates,
     /// Radius up to which the basis is enriched in full, and from which it is plain [length].
     radii: [f64; 2],
+    /// Distance from which on the functions jump where no crack is [length].
+    clear: f64,
     /// Values of the functions at nodes that may reach into the region.
     values: FxHashMap<u32, [f64; MOST_FUNCTIONS]>,
 }
@@ -68,17 +113,19 @@ pub(super) struct Place {
 impl Enrichment {
     /// The regions of a model, and a remark on each that had to be made smaller than asked for.
     pub fn of_model(model: &Model, settings: &EnrichmentSettings) -> (Option<Self>, Vec<String>) {
-        let functions = match settings.kind {
+        let (functions, form) = match settings.kind {
             EnrichmentKind::None => return (None, vec![]),
-            EnrichmentKind::IntrinsicFull => TipFunctions::Full,
-            EnrichmentKind::IntrinsicRadial => TipFunctions::Radial,
+            EnrichmentKind::IntrinsicFull => (TipFunctions::Full, Form::Intrinsic),
+            EnrichmentKind::IntrinsicRadial => (TipFunctions::Radial, Form::Intrinsic),
+            EnrichmentKind::ExtrinsicFull => (TipFunctions::Full, Form::OfNodes),
+            EnrichmentKind::ExtrinsicRadial => (TipFunctions::Radial, Form::OfNodes),
+            EnrichmentKind::ExtrinsicMls => (TipFunctions::Full, Form::OfTips),
         };
         let (mut regions, mut notes) = (vec![], vec![]);
         for (id, frame) in model.tips() {
-            let limit = largest_region(model, id);
-            let free = free_radius(model, id.crack, frame.position);
-            let sharp = first_sharp_kink(&model.cracks[id.crack], id.end);
-            let wanted = settings.r2.unwrap_or(sharp.min(OUTER_SHARE * free));
+            let clear = clear_radius(model, id);
+            let [limit, automatic] = form.outer_radii(model, id, clear);
+            let wanted = settings.r2.unwrap_or(automatic);
             let outer = wanted.min(limit);
             if settings.r2.is_some() && outer < wanted {
                 notes.push(format!(
@@ -86,11 +133,15 @@ impl Enrichment {
                     frame.position.x, frame.position.y
                 ));
             }
-            let inner = settings.r1.unwrap_or(INNER_SHARE * outer).min(outer);
-            let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, CUT_REACH * outer, 0.0);
-            regions.push(Region { coordinates, radii: [inner, outer], values: FxHashMap::default() });
+            let inner = settings.r1.unwrap_or(form.inner_radius(outer)).min(outer);
+            let reach = match form {
+                Form::Intrinsic | Form::OfTips => CUT_REACH * outer,
+                Form::OfNodes => clear,
+            };
+            let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, reach, 0.0);
+            regions.push(Region { coordinates, radii: [inner, outer], clear, values: FxHashMap::default() });
         }
-        ((!regions.is_empty()).then_some(Self { functions, ramp: settings.ramp, regions }), notes)
+        ((!regions.is_empty()).then_some(Self { functions, form, ramp: settings.ramp, regions }), notes)
     }
 
     /// The functions.
@@ -119,7 +170,7 @@ impl Enrichment {
                 if distance < support {
                     least = least.min(support);
                 }
-                if distance < outer + support {
+                if self.form == Form::Intrinsic && distance < outer + support {
                     region.values.insert(i as u32, region.coordinates.values(self.functions, *p, nodes.sights[i]));
                 }
             }
@@ -129,10 +180,33 @@ impl Enrichment {
         }
     }
 
-    /// Looks up which regions matter to points in a box.
+    /// Functions besides the shape functions of nodes; none if the basis is enriched.
+    ///
+    /// Call it after [`Self::visit_nodes`].
+    pub(super) fn extra_functions(&self, nodes: &Nodes<2>) -> Option<Extra> {
+        let of_nodes =
+            |r: &Region| ExtraRegion { coordinates: r.coordinates.clone(), outer: r.radii[1], clear: r.clear };
+        let of_tips = |r: &Region| GlobalRegion { coordinates: r.coordinates.clone(), radii: r.radii };
+        match self.form {
+            Form::Intrinsic => None,
+            Form::OfNodes => {
+                let regions = self.regions.iter().map(of_nodes).collect();
+                Some(Extra::OfNodes(ExtraFunctions::new(self.functions, regions, nodes)))
+            }
+            Form::OfTips => {
+                let regions = self.regions.iter().map(of_tips).collect();
+                Some(Extra::OfTips(GlobalFunctions::new(self.ramp, regions, nodes)))
+            }
+        }
+    }
+
+    /// Looks up in which regions the basis is enriched at points in a box.
     pub(super) fn survey(&self, bounds: &Aabb<2>, buffer: &mut EnrichmentBuffer) {
         buffer.near.clear();
         buffer.loaded = None;
+        if self.form != Form::Intrinsic {
+            return;
+        }
         for (i, region) in self.regions.iter().enumerate() {
             let reach = Aabb::around(region.coordinates.tip(), Vector2::repeat(region.radii[1]));
             if reach.intersects(bounds) {
@@ -145,36 +219,10 @@ impl Enrichment {
     #[inline]
     pub(super) fn place(&self, at: Vector2, buffer: &EnrichmentBuffer) -> Option<Place> {
         buffer.near.iter().find_map(|&region| {
-            let share = self.share(&self.regions[region as usize], at)?;
+            let Region { coordinates, radii, .. } = &self.regions[region as usize];
+            let share = ramp_share(self.ramp, *radii, coordinates.tip(), at)?;
             Some(Place { region, share })
         })
-    }
-
-    /// Share of the enriched shape functions; nothing outside the region [EFG, Eq. 54].
-    fn share(&self, region: &Region, at: Vector2) -> Option<Jet> {
-        let ([inner, outer], d) = (region.radii, at - region.coordinates.tip());
-        let r = d.norm();
-        let one = Jet { value: 1.0, ..Jet::ZERO };
-        if r >= outer {
-            return None;
-        }
-        match self.ramp {
-            Ramp::Abrupt => Some(one),
-            Ramp::Linear | Ramp::Quintic if r <= inner => Some(one),
-            Ramp::Linear | Ramp::Quintic => {
-                let width = outer - inner;
-                let x = (r - inner) / width;
-                let [value, slope, bend] = self.ramp.polynomial(x);
-                let distance = Jet::distance(at, region.coordinates.tip());
-                let (slope, bend) = (slope / width, bend / (width * width));
-                let square: Matrix2 = distance.gradient * distance.gradient.transpose();
-                Some(Jet {
-                    value,
-                    gradient: distance.gradient * slope,
-                    second: square * bend + distance.second * slope,
-                })
-            }
-        }
     }
 
     /// Values of the functions at neighbors less those at the point, neighbor by neighbor, and the derivatives at the
@@ -223,6 +271,26 @@ pub(super) struct TipPoint {
     pub second_derivatives: [Matrix2; MOST_FUNCTIONS],
 }
 
+/// Share of the enriched shape functions; nothing outside the region [EFG, Eq. 54].
+pub(super) fn ramp_share(ramp: Ramp, [inner, outer]: [f64; 2], tip: Vector2, at: Vector2) -> Option<Jet> {
+    let distance = Jet::distance(at, tip);
+    let one = Jet { value: 1.0, ..Jet::ZERO };
+    if distance.value >= outer {
+        return None;
+    }
+    match ramp {
+        Ramp::Abrupt => Some(one),
+        Ramp::Linear | Ramp::Quintic if distance.value <= inner => Some(one),
+        Ramp::Linear | Ramp::Quintic => {
+            let width = outer - inner;
+            let [value, slope, bend] = ramp.polynomial((distance.value - inner) / width);
+            let (slope, bend) = (slope / width, bend / (width * width));
+            let square: Matrix2 = distance.gradient * distance.gradient.transpose();
+            Some(Jet { value, gradient: distance.gradient * slope, second: square * bend + distance.second * slope })
+        }
+    }
+}
+
 impl Ramp {
     /// Ramp and derivatives by its argument between 0 and 1 [EFG, Eq. 54].
     fn polynomial(self, x: f64) -> [f64; 3] {
@@ -238,13 +306,17 @@ impl Ramp {
     }
 }
 
-/// Radius of the largest disk around a tip in which its functions jump across its own crack only, and which leaves
-/// the other tips half of the way [length].
-fn largest_region(model: &Model, id: TipId) -> f64 {
+/// Half of the way from a tip to the nearest other one [length].
+fn half_way(model: &Model, id: TipId) -> f64 {
+    let tip = model.cracks[id.crack].end_position(id.end);
+    let others = model.tips().into_iter().map(|(_, frame)| frame.position).filter(|p| *p != tip);
+    others.map(|p| SHARED * (p - tip).norm()).fold(f64::INFINITY, f64::min)
+}
+
+/// Radius of the largest disk around a tip in which its functions jump across its own crack only [length].
+fn clear_radius(model: &Model, id: TipId) -> f64 {
     let crack = &model.cracks[id.crack];
     let tip = crack.end_position(id.end);
-    let others = model.tips().into_iter().map(|(_, frame)| frame.position).filter(|p| *p != tip);
-    let shared = others.map(|p| SHARED * (p - tip).norm()).fold(f64::INFINITY, f64::min);
     let far = match id.end {
         End::Start => End::End,
         End::End => End::Start,
@@ -254,11 +326,13 @@ fn largest_region(model: &Model, id: TipId) -> f64 {
         EndKind::Tip | EndKind::Junction => (crack.end_position(far) - tip).norm(),
         EndKind::Mouth => {
             let path = crack.from_end(far);
-            let again = path[0] + through_void(model, path[0], path[0] - path[1]);
-            (again - tip).norm()
+            let way = through_void(model, path[0], path[0] - path[1]);
+            // That far there is no body left to jump in.
+            let leaves_body = way.norm() > 0.999 * model.domain.aabb().size().norm();
+            if leaves_body { f64::INFINITY } else { (path[0] + way - tip).norm() }
         }
     };
-    shared.min(CLEARANCE * leaves.min(first_fold(crack, id.end)))
+    leaves.min(first_fold(crack, id.end))
 }
 
 /// Distance from a tip to the first kink around which its functions cannot be mapped: one that turns too far, or that

@@ -53,21 +53,6 @@ impl<const D: usize> FrontFrame<D> {
         [(2.0 * a + self.curvature * in_plane2) / (1.0 + (1.0 + q).max(0.0).sqrt()), n]
     }
 
-    /// The frame where the plane normal to the arc holds a point.
-    fn slid_to(&self, at: Vector<D>) -> Self {
-        let d = at - self.position;
-        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
-        let along = d - self.ahead * a - self.normal * n;
-        let reach = 1.0 + self.curvature * a;
-        let stretch = reach.hypot(self.curvature * along.norm());
-        if reach <= 0.0 {
-            return *self;
-        }
-        let ahead = (self.ahead * reach + along * self.curvature) / stretch;
-        let drop = self.curvature * along.norm_squared() / (stretch * (stretch + reach));
-        Self { position: self.position + along / stretch - self.ahead * drop, ahead, ..*self }
-    }
-
     /// Distance and angle; `sight` tells the side of points on the crack, where the angle is ±π.
     #[inline]
     pub fn polar(&self, at: Vector<D>, sight: Vector<D>) -> [f64; 2] {
@@ -158,12 +143,16 @@ impl<const D: usize> FrontLine<D> {
         let mut best: Option<(f64, FrontFrame<D>)> = None;
         for (a, b) in pairs {
             let e = b.position - a.position;
-            let t = ((at - a.position).dot(&e) / e.norm_squared()).clamp(0.0, 1.0);
-            let distance = (at - a.position - e * t).norm_squared();
+            // The chord's foot would jump where chords meet: the planes normal to the arc at both ends divide its length.
+            let ahead_of = |f: &FrontFrame<D>| {
+                (at - f.position).dot(&(e - f.ahead * e.dot(&f.ahead) - f.normal * e.dot(&f.normal)).normalize())
+            };
+            let (from, to) = (ahead_of(a), ahead_of(b));
+            let t = if from > to { (from / (from - to)).clamp(0.0, 1.0) } else { 0.5 };
+            let frame = between(a, b, t);
+            let distance = (at - frame.position).norm_squared();
             if best.is_none_or(|(least, _)| distance < least) {
-                let frame = between(a, b, t);
-                // Seen from inside, the chord is nearest elsewhere than the arc; ends stay where they are.
-                best = Some((distance, if t > 0.0 && t < 1.0 { frame.slid_to(at) } else { frame }));
+                best = Some((distance, frame));
             }
         }
         best.map(|(_, frame)| frame)

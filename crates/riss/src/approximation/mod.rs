@@ -2,18 +2,22 @@
 //!
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
 //! from the [`weight_function`] of each visible neighbor and the fit in [`mls`], near tips with the functions of an
-//! [`enrichment`]; for point collocation [`ConstrainedMls`] does, by a fit in the [`taylor_basis`].
+//! [`enrichment`]: in the basis, or as further unknowns (`partition_of_unity`, `global_functions`). For point collocation
+//! [`ConstrainedMls`] does, by a fit in the [`taylor_basis`].
 
 pub mod constrained_mls;
 mod detour;
 pub mod discontinuity;
 mod enriched_fit;
 pub mod enrichment;
+mod extra;
 mod fade;
 pub mod front_functions;
+mod global_functions;
 mod least_squares;
 pub mod mls;
 pub mod moving_least_squares;
+mod partition_of_unity;
 pub mod settings;
 mod sight;
 pub mod taylor_basis;
@@ -35,7 +39,8 @@ pub use settings::{
 /// Shape functions at one point. A buffer that is refilled, one per thread.
 #[derive(Clone, Debug, Default)]
 pub struct ShapeFunctions<const D: usize> {
-    /// Nodes whose shape functions are not zero.
+    /// Nodes whose shape functions are not zero, ascending; then, from the number of nodes on, the additional functions of
+    /// enriched nodes.
     pub neighbors: Vec<u32>,
     /// Values.
     pub values: Vec<f64>,

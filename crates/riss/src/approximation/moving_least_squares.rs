@@ -5,6 +5,7 @@ use super::detour::Jet;
 use super::discontinuity::Barriers;
 use super::enriched_fit::fit_enriched_into;
 use super::enrichment::{Enrichment, EnrichmentBuffer, Place, TipPoint};
+use super::extra::Extra;
 use super::mls::{Neighborhood, fit_into, quality};
 use super::settings::{ApproximationSettings, SupportShape, WeightFunction};
 use super::sight::{Candidate, Sight, SightBuffer, View};
@@ -57,6 +58,7 @@ pub struct MovingLeastSquares {
     settings: ApproximationSettings,
     supports: BoxTree<2>,
     enrichment: Option<Enrichment>,
+    extra: Option<Extra>,
 }
 
 impl MovingLeastSquares {
@@ -65,16 +67,41 @@ impl MovingLeastSquares {
         let boxes: Vec<_> =
             nodes.positions.iter().zip(&nodes.support_radii).map(|(p, r)| Aabb::around(*p, *r)).collect();
         let (supports, sight) = (BoxTree::new(&boxes), Sight::new(barriers.into(), &nodes));
-        Self { supports, sight, nodes, settings, enrichment: None }
+        Self { supports, sight, nodes, settings, enrichment: None, extra: None }
     }
 
-    /// Adds the functions of tips to the basis around them.
+    /// Adds the functions of tips, to the basis around them or to the nodes there.
     pub fn enriched(mut self, enrichment: Option<Enrichment>) -> Self {
         self.enrichment = enrichment;
-        if let Some(enrichment) = &mut self.enrichment {
+        self.extra = self.enrichment.as_mut().and_then(|enrichment| {
             enrichment.visit_nodes(&self.nodes);
-        }
+            enrichment.extra_functions(&self.nodes)
+        });
         self
+    }
+
+    /// Number of functions: one of each node, and the additional ones of enriched nodes.
+    pub fn n_functions(&self) -> usize {
+        self.extra.as_ref().map_or(self.nodes.len(), Extra::n_functions)
+    }
+
+    /// Angle of each tip with functions of its own, whose parameters are tied to K_I and K_II [rad]; in the order of the tips.
+    pub fn tied_tips(&self) -> Vec<f64> {
+        self.extra.as_ref().map_or(vec![], Extra::tied_tips)
+    }
+
+    /// Position of the node or tip of each function.
+    pub fn function_positions(&self) -> Vec<Vector2> {
+        let mut positions = self.nodes.positions.clone();
+        positions.extend(self.extra.iter().flat_map(|extra| extra.positions(&self.nodes.positions)));
+        positions
+    }
+
+    /// Appends the additional functions that are not zero where the nodes in an ascending list act.
+    pub fn append_functions(&self, list: &mut Vec<u32>) {
+        if let Some(extra) = &self.extra {
+            extra.append_to(list);
+        }
     }
 
     /// The enriched regions, if there are any.
@@ -235,7 +262,13 @@ impl MovingLeastSquares {
             Some(place) => self.fit_in_region(&place, [at, sight], around, shape),
             None => fit_into(self.settings.basis, &mut around.near, shape),
         };
-        if fits { Ok(()) } else { Err(self.singular(at, around)) }
+        if !fits {
+            return Err(self.singular(at, around));
+        }
+        if let Some(extra) = &self.extra {
+            extra.append([at, sight], shape);
+        }
+        Ok(())
     }
 
     /// The enriched region around a point that was surveyed.

@@ -51,13 +51,20 @@ impl ApproximationSettings {
     }
 
     /// The smoothing that is used, nothing left open; rectangular supports know visibility only. The full enriched basis
-    /// needs continuous weights around tips: diffraction with λ = 1 if nothing is said.
+    /// and extrinsic enrichment need continuous weights around tips: diffraction with λ = 1 if nothing is said.
     pub fn resolved_smoothing(&self) -> SmoothingSettings {
         let mut given = match self.support {
             SupportShape::Circular => self.smoothing,
             SupportShape::Rectangular => SmoothingSettings::VISIBILITY,
         };
-        if self.enrichment.kind == EnrichmentKind::IntrinsicFull && given.cracks.is_none() {
+        let wants_diffraction = match self.enrichment.kind {
+            EnrichmentKind::IntrinsicFull
+            | EnrichmentKind::ExtrinsicFull
+            | EnrichmentKind::ExtrinsicRadial
+            | EnrichmentKind::ExtrinsicMls => true,
+            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => false,
+        };
+        if wants_diffraction && given.cracks.is_none() {
             given.cracks = Some(CrackSmoothing::Diffraction { lambda: 1.0 });
         }
         SmoothingSettings { cracks: Some(given.cracks()), holes: Some(given.holes()) }
@@ -68,7 +75,7 @@ impl ApproximationSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SmoothingSettings {
-    /// Around cracks; if not given visibility, or diffraction with the full enriched basis.
+    /// Around cracks; if not given visibility, or diffraction with the full enriched basis and extrinsic enrichment.
     pub cracks: Option<CrackSmoothing>,
     /// Around holes and re-entrant corners; visibility if not given. Wide supports at round holes want diffraction.
     pub holes: Option<HoleSmoothing>,
@@ -141,15 +148,17 @@ pub enum HoleSmoothing {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct EnrichmentSettings {
-    /// What the basis holds besides polynomials.
+    /// What the basis, or the nodes, hold besides polynomials.
     pub kind: EnrichmentKind,
-    /// How enriched and plain shape functions are joined (Eq. 54).
+    /// How enriched and plain shape functions are joined (Eq. 54), and how the functions of `extrinsic-mls` fade.
     pub ramp: Ramp,
-    /// Distance from a tip up to which only enriched shape functions are used [length]; half of `r2` if not given.
+    /// Distance from a tip up to which only enriched shape functions are used [length]; half of `r2` if not given, 0 with
+    /// `extrinsic-mls`, which needs a wide ramp.
     #[schemars(range(min = 0.0))]
     pub r1: Option<f64>,
     /// Distance from a tip at which only plain shape functions are left [length]; half of the distance to boundaries,
-    /// other cracks and the far end of the crack if not given, or that to a sharp kink. Regions never overlap.
+    /// other cracks and the far end of the crack if not given, or that to a sharp kink. Regions never overlap. With
+    /// `extrinsic-mls` they may, and end at a sharp kink or where the crack does if not given: nowhere for an edge crack.
     #[schemars(range(min = 0.0))]
     pub r2: Option<f64>,
     /// Support radius over characteristic node spacing of the nodes that reach into a region, if larger than
@@ -165,7 +174,11 @@ impl EnrichmentSettings {
         self.dilation.unwrap_or(match self.kind {
             EnrichmentKind::IntrinsicFull if is_regular => 3.2,
             EnrichmentKind::IntrinsicFull => 2.75,
-            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => 0.0,
+            EnrichmentKind::None
+            | EnrichmentKind::IntrinsicRadial
+            | EnrichmentKind::ExtrinsicFull
+            | EnrichmentKind::ExtrinsicRadial
+            | EnrichmentKind::ExtrinsicMls => 0.0,
         })
     }
 }
@@ -181,6 +194,13 @@ pub enum EnrichmentKind {
     IntrinsicFull,
     /// The root of the distance from the tip, in the basis (5.3.2): cheaper, less accurate.
     IntrinsicRadial,
+    /// The four functions times the shape functions of the nodes nearer to a tip than `r2`, as further unknowns (5.2);
+    /// there is no ramp, and `r1` has no meaning.
+    ExtrinsicFull,
+    /// The root of the distance times the shape functions of the nodes nearer to a tip than `r2` (5.2).
+    ExtrinsicRadial,
+    /// The displacements of both modes at each tip, with `K_I` and `K_II` as unknowns (5.1); they fade between `r1` and `r2`.
+    ExtrinsicMls,
 }
 
 /// Ramp between enriched and plain shape functions [EFG, Eq. 54].

@@ -113,6 +113,11 @@ impl TipCoordinates {
         self.core = core;
     }
 
+    /// The direction ahead of the tip [rad].
+    pub fn angle(&self) -> f64 {
+        self.frame.angle
+    }
+
     /// The tip.
     pub fn tip(&self) -> Vector2 {
         self.frame.position

@@ -99,7 +99,13 @@ impl<'a> Checker<'a> {
     }
 
     fn table(&mut self, node: &Node, table: &BTreeMap<String, Node>, schema: &'a Value, key: &str) {
-        let Some(properties) = schema["properties"].as_object() else { return };
+        let Some(properties) = schema["properties"].as_object() else {
+            // A table of values under names that the author chooses.
+            for (name, child) in table.iter().filter(|_| schema["additionalProperties"].is_object()) {
+                self.node(child, &schema["additionalProperties"], &join(key, name));
+            }
+            return;
+        };
         let start = self.problems.len();
         for (name, child) in table {
             let path = join(key, name);
@@ -169,7 +175,7 @@ impl<'a> Checker<'a> {
             self.report(key, node, "a table, not a name".into()).suggest(format!("write [{key}.{text}]"));
             return;
         }
-        let planned = key == "method" && ["cracking-particles", "collocation"].contains(&text);
+        let planned = key == "method" && text == "collocation";
         let message = if planned { "this method is not available yet" } else { "unknown name" };
         self.report(key, node, message.into()).one_of(text, names.into_iter().chain(tables));
     }

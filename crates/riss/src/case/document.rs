@@ -103,7 +103,7 @@ impl Document {
         for step in steps {
             let next = match &node.content {
                 Content::Table(table) => table.get(step),
-                Content::List(list) => step.parse::<usize>().ok().and_then(|k| list.get(k)),
+                Content::List(list) => index(list, step).map(|k| &list[k]),
                 _ => None,
             };
             match next {
@@ -112,6 +112,20 @@ impl Document {
             }
         }
         Some(node)
+    }
+
+    /// Whether there is a value at a key path.
+    pub fn says(&self, key: &str) -> bool {
+        let mut steps = steps(key);
+        let Some(first) = steps.next() else { return false };
+        let mut node = self.root.get(first);
+        for step in steps {
+            node = match node.map(|n| &n.content) {
+                Some(Content::Table(table)) => table.get(step),
+                _ => None,
+            };
+        }
+        node.is_some()
     }
 
     /// Puts a problem at the value of its key, or at the table that lacks it.
@@ -151,6 +165,24 @@ impl Document {
         self.root.iter().map(|(k, v)| (k.clone(), v.to_toml())).collect()
     }
 
+    /// Adds a value where there is none yet; in messages it stands at the value of `place`.
+    pub fn add(&mut self, path: &[&str], value: &toml::Value, place: &str) {
+        let (origin, at) = self.find(place).map_or((Origin::File, 0), |n| (n.origin, n.span.start));
+        let is_there = match path {
+            [section] => self.root.contains_key(*section),
+            [section, key] => match self.root.get(*section).map(|n| &n.content) {
+                Some(Content::Table(table)) => table.contains_key(*key),
+                Some(_) => true,
+                None => false,
+            },
+            _ => true,
+        };
+        if !is_there {
+            // Whatever is in the way is reported by the check of the schema.
+            let _ = insert(&mut self.root, path, added(value, origin, at));
+        }
+    }
+
     /// Removes the kinds that give way to the one in `path`.
     fn make_room(&mut self, path: &[&str]) {
         for choice in CHOICES {
@@ -187,6 +219,9 @@ impl Document {
             },
         };
         place_all(&mut node, &(offset..text.len()), &(0..offset - 1));
+        // A parameter by its name alone.
+        let is_parameter = |name: &str| matches!(self.root.get("parameters").map(|n| &n.content), Some(Content::Table(t)) if t.contains_key(name));
+        let path = if path.len() == 1 && is_parameter(path[0]) { vec!["parameters", path[0]] } else { path };
         self.make_room(&path);
         insert(&mut self.root, &path, node).map_err(|message| bad(&message))
     }
@@ -224,10 +259,9 @@ fn insert_below(node: &mut Node, name: &str, rest: &[&str], value: Node) -> Resu
         Content::Table(table) => insert(table, rest, value),
         Content::List(list) => {
             let n = list.len();
-            let element = rest[0].parse::<usize>().ok().and_then(|k| list.get_mut(k));
-            let Some(element) = element else {
+            let Some(element) = index(list, rest[0]).map(|k| &mut list[k]) else {
                 return Err(format!(
-                    "`{name}` is a list of {n}; the step after it is an index from 0, not `{}`",
+                    "`{name}` is a list of {n}; the step after it is an index from 0 or the `name` of an element, not `{}`",
                     rest[0]
                 ));
             };
@@ -245,6 +279,36 @@ fn insert_below(node: &mut Node, name: &str, rest: &[&str], value: Node) -> Resu
             Ok(())
         }
     }
+}
+
+/// Which element of a list a step of a key path means: by index, or by its `name`.
+fn index(list: &[Node], step: &str) -> Option<usize> {
+    if let Ok(k) = step.parse::<usize>() {
+        return (k < list.len()).then_some(k);
+    }
+    let is_meant = |node: &Node| match &node.content {
+        Content::Table(table) => {
+            matches!(table.get("name").map(|n| &n.content), Some(Content::Text(name)) if name == step)
+        }
+        _ => false,
+    };
+    list.iter().position(is_meant)
+}
+
+/// A value that stands nowhere in the text, placed at one byte of it.
+fn added(value: &toml::Value, origin: Origin, at: usize) -> Node {
+    let content = match value {
+        toml::Value::String(s) => Content::Text(s.clone()),
+        toml::Value::Integer(i) => Content::Integer(*i),
+        toml::Value::Float(v) => Content::Float(*v),
+        toml::Value::Boolean(b) => Content::Boolean(*b),
+        toml::Value::Datetime(d) => Content::Date(d.to_string()),
+        toml::Value::Array(list) => Content::List(list.iter().map(|v| added(v, origin, at)).collect()),
+        toml::Value::Table(table) => {
+            Content::Table(table.iter().map(|(k, v)| (k.clone(), added(v, origin, at))).collect())
+        }
+    };
+    Node { content, origin, span: at..at, key_span: at..at }
 }
 
 fn place_all(node: &mut Node, span: &Range<usize>, key_span: &Range<usize>) {
@@ -316,14 +380,21 @@ mod tests {
 
     #[test]
     fn overrides_replace_add_and_fail() {
-        let text =
-            "constraints = 'lagrange-multipliers'\n[material]\nyoung = 1\n[[crack]]\npath = [[0, 8], [3.5, 8]]\n";
-        let set = ["material.young=2e3", "constraints.penalty.factor=5", "crack[0].path.1=[4, 8]", "title=My plate"];
+        let text = "constraints = 'lagrange-multipliers'\n[material]\nyoung = 1\n[[crack]]\npath = [[0, 8], [3.5, 8]]\n\
+            [[crack]]\nname = 'far'\npath = [[1, 2], [3, 4]]\n";
+        let set = [
+            "material.young=2e3",
+            "constraints.penalty.factor=5",
+            "crack[0].path.1=[4, 8]",
+            "title=My plate",
+            "crack.far.path[0][1]=5",
+        ];
         let (document, problems) = parse(text, &set);
         assert!(problems.is_empty(), "{problems:?}");
         assert!(matches!(document.find("material.young").unwrap().content, Content::Float(v) if v == 2000.0));
         assert!(matches!(document.find("constraints.penalty.factor").unwrap().content, Content::Integer(5)));
         assert!(matches!(document.find("crack[0].path[1][0]").unwrap().content, Content::Integer(4)));
+        assert!(matches!(document.find("crack[1].path[0][1]").unwrap().content, Content::Integer(5)));
         assert!(matches!(&document.find("title").unwrap().content, Content::Text(s) if s == "My plate"));
         let (document, _) = parse("[nodes.layout.structured]\nnx = 2\n", &["nodes.layout.graded.spacing=1"]);
         assert!(matches!(document.find("nodes.layout.graded.spacing").unwrap().content, Content::Integer(1)));

@@ -41,6 +41,12 @@ const UNARY: [(&str, Unary); 17] = [
 /// Functions of two arguments.
 const BINARY: [(&str, Binary); 4] =
     [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2), ("hypot", f64::hypot)];
+/// Whether a name means something in every expression.
+pub(super) fn is_reserved(name: &str) -> bool {
+    let functions = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
+    VARIABLES.into_iter().chain(["pi", "PI", "π"]).chain(functions).any(|n| n == name)
+}
+
 /// Longer texts are no expressions.
 const MAX_LENGTH: usize = 1000;
 /// Nesting and intermediate values that are provided for.

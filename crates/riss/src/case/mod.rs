@@ -1,19 +1,25 @@
 //! The case file: text in, checked [`Model`] and [`Settings`] out.
 //!
-//! Reading order: [`schema`] (what may be written), [`document`] (what was written), [`check`] (names and types),
-//! [`expression`], [`build`] (geometry and sense). All mistakes are reported together, each at its line.
+//! Reading order: [`schema`] (what may be written), [`document`] (what was written), [`values`] with [`units`] and
+//! [`expression`] (texts that stand for numbers), [`check`] (names and types), [`build`] (geometry and sense). All mistakes are reported together, each at its line.
 
+mod abaqus;
 mod build;
 mod check;
 mod document;
+mod effective;
 mod expression;
 pub mod gmsh;
 mod problem;
 mod schema;
 mod solid;
+mod units;
+mod values;
 
 use crate::analysis::{GrowthSettings, Settings};
-use crate::model::Model;
+use crate::model::{Model, UnitNames};
+pub use abaqus::import_abaqus;
+use build::Built;
 use document::Document;
 pub use problem::{CaseErrors, Origin, Problem};
 pub use schema::OutputSettings;
@@ -49,6 +55,8 @@ pub struct Case {
     pub growth: Option<GrowthSettings>,
     /// What to write.
     pub output: OutputSettings,
+    /// Units, if the case says them.
+    pub units: Option<UnitNames>,
     /// The case file.
     pub path: PathBuf,
     /// Its text.
@@ -82,14 +90,15 @@ impl Case {
     /// All problems of the case, in the order of the file.
     pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
         let mut problems = vec![];
-        let document = Document::parse(text, overrides, &mut problems);
-        let built = if problems.is_empty() { build::build(&document, path, &mut problems) } else { None };
+        let mut document = Document::parse(text, overrides, &mut problems);
+        let built = if problems.is_empty() { build::build(&mut document, path, &mut problems) } else { None };
         match built {
-            Some((model, settings, growth, output, notes)) if problems.is_empty() => Ok(Self {
+            Some(Built { model, settings, growth, output, units, notes }) if problems.is_empty() => Ok(Self {
                 model,
                 settings,
                 growth,
                 output,
+                units,
                 path: path.into(),
                 text: text.into(),
                 overrides: overrides.to_vec(),
@@ -123,7 +132,35 @@ impl Case {
 
 /// The JSON Schema of the case file.
 pub fn json_schema() -> serde_json::Value {
+    let mut schema = plain_schema();
+    allow_texts(&mut schema);
+    schema
+}
+
+/// The schema with numbers only.
+fn plain_schema() -> serde_json::Value {
     schemars::schema_for!(schema::CaseFile).to_value()
+}
+
+/// Lets a text stand wherever a number may: a quantity, or an expression of parameters.
+fn allow_texts(schema: &mut serde_json::Value) {
+    use serde_json::{Value, json};
+    match schema {
+        Value::Array(list) => list.iter_mut().for_each(allow_texts),
+        Value::Object(map) => {
+            if let Some(kind) = map.get_mut("type") {
+                if *kind == "number" {
+                    *kind = json!(["number", "string"]);
+                } else if let Value::Array(kinds) = kind
+                    && kinds.contains(&json!("number"))
+                {
+                    kinds.push(json!("string"));
+                }
+            }
+            map.values_mut().for_each(allow_texts);
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+    }
 }
 
 /// The text of a file.

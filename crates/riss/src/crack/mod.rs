@@ -5,6 +5,7 @@
 
 pub mod front;
 pub mod meetings;
+pub mod particles;
 pub mod path;
 pub mod shape;
 pub mod surface;
@@ -12,6 +13,7 @@ pub mod tip;
 
 pub use front::{CrackFront, FrontPoint};
 pub use meetings::Meeting;
+pub use particles::{CrackForm, CrackParticle, CrackParticles};
 pub use path::{CrackPath, End, EndKind};
 pub use shape::{CrackDefect, CrackShape};
 pub use surface::{CrackSurface, MouthPiece, Mouths};

@@ -8,7 +8,7 @@
 //! Differs from [CPM, Eqs. 8, 12, 18]: their signs do not agree. Here `g_1 = J > 0`, and the crack grows along `+g`.
 //! Differs from [CPM, Eq. 22]: q is one in the middle of a domain, so that the nodes at the tip count least.
 
-use super::interaction_integral::{ForceAt, GradientField};
+use super::interaction_integral::{FacePressure, ForceAt, GradientField, TipLoads};
 use super::settings::{FaceTerm, FractureSettings, JIntegral, TipDomainShape};
 use super::tip_domain::{PLATEAU, TipView, rim};
 use crate::error::Result;
@@ -28,7 +28,7 @@ const TIP_SHARE: f64 = 1.0 / 9.0;
 pub struct ConfigurationalForce {
     /// Radius of the domain [length].
     pub radius: f64,
-    /// What the domain or its outline holds, body forces included [stress·length].
+    /// What the domain or its outline holds, body forces and pressure on the faces included [stress·length].
     pub around: Vector2,
     /// What the crack faces hold [stress·length].
     pub faces: Vector2,
@@ -52,7 +52,7 @@ pub fn force_of_factors(k1: f64, k2: f64, material: &Elasticity) -> Vector2 {
 
 /// Evaluates every domain of a tip, smallest first, as the settings say: over domains or along their outlines.
 ///
-/// - `body_force`: what acts inside the body, if anything
+/// - `loads`: what acts inside the body and on the crack faces, if anything
 ///
 /// # Errors
 /// Those of the field.
@@ -61,7 +61,7 @@ pub fn configurational_forces<F: GradientField>(
     radii: &[f64],
     settings: &FractureSettings,
     material: &Elasticity,
-    body_force: Option<ForceAt>,
+    loads: &TipLoads,
     field: &F,
 ) -> Result<Vec<ConfigurationalForce>> {
     let shape = settings.domain;
@@ -70,8 +70,11 @@ pub fn configurational_forces<F: GradientField>(
             JIntegral::Domain => (over_domain(view, shape, radius, material, field)?, PLATEAU),
             JIntegral::Contour => (along_outline(view, shape, radius, material, field)?, 1.0),
         };
-        if let Some(force) = body_force {
+        if let Some(force) = loads.body_force {
             around -= work_of_body_force(view, (shape, radius, plateau), force, field)?;
+        }
+        if let Some(pressure) = &loads.face_pressure {
+            around += work_of_pressure(view, (shape, radius, plateau), pressure, field)?;
         }
         let faces = over_faces(view, (shape, radius, plateau), material, field)?;
         let local = |v: Vector2| Vector2::new(v.dot(&view.frame.x1()), v.dot(&view.frame.x2()));
@@ -126,6 +129,24 @@ fn work_of_body_force<F: GradientField>(
     )
 }
 
+/// `-∫ q Hᵀ t ds` over both faces, where a pressure is the traction `-p m` [CPM, Eqs. 10, 13]. The integral of the opening's
+/// derivative begins with its jump at the tip.
+fn work_of_pressure<F: GradientField>(
+    view: &TipView,
+    (shape, radius, plateau): (TipDomainShape, f64, f64),
+    pressure: &FacePressure,
+    field: &F,
+) -> Result<Vector2> {
+    let points = view.faces(shape, radius, plateau, 0);
+    let along = sum(
+        field,
+        &points,
+        |p| (p.position, p.sight),
+        |p, gradient| gradient.transpose() * p.normal * ((pressure.at)(p.position) * p.weight * p.q.x),
+    )?;
+    Ok(along + view.frame.x1() * ((pressure.at)(view.frame.position) * pressure.tip_opening))
+}
+
 /// `∫ q W m ds` over both faces; q is one all the way for an outline, whose `plateau` is one.
 fn over_faces<F: GradientField>(
     view: &TipView,
@@ -140,7 +161,8 @@ fn over_faces<F: GradientField>(
         &points,
         |p| (p.position, p.sight),
         |p, gradient| {
-            // A free face is stretched along itself only: W = E' ε² / 2. What the solution has of traction is its error.
+            // A free face is stretched along itself only: W = E' ε² / 2. What the solution has of traction is its error. A
+            // pressure adds the same on both faces.
             let along = turn_left(p.normal);
             let stretch = along.dot(&(gradient * along));
             p.normal * (half_modulus * stretch * stretch * p.weight)
@@ -275,7 +297,7 @@ mod tests {
         let view = TipView { id, frame, path: crack.from_end(End::End), largest_radius: 1.0 };
         let settings = FractureSettings { domain, j_integral, ..FractureSettings::default() };
         let field = Exact(field, MATERIAL);
-        configurational_forces(&view, &[0.01, 0.2, 0.9], &settings, &MATERIAL, None, &field).unwrap()
+        configurational_forces(&view, &[0.01, 0.2, 0.9], &settings, &MATERIAL, &TipLoads::default(), &field).unwrap()
     }
 
     #[test]

@@ -21,10 +21,10 @@ const ANGULAR_POINTS: usize = 96;
 const CONTOUR_PANELS: usize = 4;
 /// A turn of the crack that disturbs the fields beside it [rad].
 const SHARP_TURN: f64 = 0.2;
-/// Radius of a domain over the distance of a kink that it leaves out (squares reach a little beyond), and how far it is shrunk
-/// for that at most.
+/// Radius of a domain over the distance of a kink that it leaves out (squares reach a little beyond).
 const KINK_CLEARANCE: f64 = 0.9;
-const LEAST_SHRINKING: f64 = 1.0 / 6.0;
+/// Least radius of such a domain over the node spacing at the tip.
+const LEAST_SPACINGS: f64 = 4.0;
 /// Points on each stretch of a crack face along which q is smooth.
 const FACE_POINTS: usize = 16;
 
@@ -155,17 +155,24 @@ impl TipView {
         Ok((shrunk, Some(note)))
     }
 
-    /// The radii, shrunk until no sharp kink of the crack lies within them, unless that is next to the tip: what the faces
-    /// hold near a kink is poor, and counts in full for the configurational force.
-    pub fn clear_of_kinks(&self, radii: &[f64]) -> Vec<f64> {
+    /// The radii, shrunk until no sharp kink of the crack lies within them, unless too few nodes would be left: what the
+    /// faces hold near a kink is poor, and counts in full for the configurational force.
+    ///
+    /// - `spacing`: distance between the nodes at the tip [length]
+    pub fn clear_of_kinks(&self, radii: &[f64], spacing: f64) -> Vec<f64> {
         let largest = radii.iter().copied().fold(0.0, f64::max);
+        let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let kink = self.path.windows(3).find_map(|w| {
             let (a, b) = (w[1] - w[0], w[2] - w[1]);
             let is_sharp = cross(a, b).abs().atan2(a.dot(&b)) > SHARP_TURN;
             is_sharp.then(|| (w[1] - self.frame.position).norm())
         });
         let share = kink.map_or(1.0, |d| (KINK_CLEARANCE * d / largest).min(1.0));
-        if share < LEAST_SHRINKING { radii.to_vec() } else { radii.iter().map(|r| r * share).collect() }
+        if share * smallest < LEAST_SPACINGS * spacing {
+            radii.to_vec()
+        } else {
+            radii.iter().map(|r| r * share).collect()
+        }
     }
 
     /// The domain of a given size.

@@ -228,7 +228,7 @@ mod tests {
         let corners = [(0.0, 0.0), (1.3, 0.1), (1.0, 1.0), (0.2, 0.8)].map(|(x, y)| Vector2::new(x, y));
         let outline = edges(&corners).map(|(start, end)| Curve::Line { start, end }).collect();
         let model = Model::plain(Domain::new(outline, vec![hole]));
-        let nodal = crate::nodes::generate(&model, &Default::default()).unwrap().triangulation;
+        let nodal = crate::nodes::generate(&model, &Default::default(), Default::default()).unwrap().triangulation;
         let cells = IntegrationCells::background(&model, &nodal, &[], 0.07, &IntegrationSettings::default()).unwrap();
         let sum: f64 = cells.points.iter().map(|p| p.weight).sum();
         assert!((sum - model.domain.area()).abs() < 1e-4, "{sum} {}", model.domain.area());

@@ -333,7 +333,7 @@ mod tests {
     #[test]
     fn curved_cells_have_the_exact_area_and_closed_outlines() {
         let model = disk_with_crack();
-        let layered = generate(&model, &NodeSettings::default()).unwrap();
+        let layered = generate(&model, &NodeSettings::default(), Default::default()).unwrap();
         let tips: Vec<_> = model.tips().iter().map(|t| t.1.position).collect();
         let cells = IntegrationCells::elements(
             &layered.triangulation,

@@ -9,6 +9,7 @@ pub mod load;
 pub mod solid;
 pub mod solid_model;
 pub mod support;
+pub mod units;
 
 use crate::crack::{CrackPath, TipFrame, TipId};
 use crate::exact::ExactField;
@@ -24,6 +25,7 @@ pub use solid::{
 pub use solid_model::SolidModel;
 use std::sync::Arc;
 pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
+pub use units::UnitNames;
 
 /// A linear elastic body in the plane with cracks, loads and supports.
 #[derive(Clone, Debug)]

@@ -71,6 +71,7 @@ mod tests {
     use super::super::settings::{Graded, Layout, NodeSettings};
     use super::*;
     use crate::case::Case;
+    use crate::crack::CrackForm;
 
     fn case(spacing: &str) -> Case {
         let text = format!(
@@ -89,7 +90,7 @@ mod tests {
         for text in ["spacing = 0.05, tip_spacing = 0.05", "tip_spacing = 1e-3", "tip_spacing = 1e-8", "growth = 0.05"]
         {
             let case = case(text);
-            let n = generate(&case.model, &case.settings.nodes).unwrap().chains.positions.len() as f64;
+            let n = generate(&case.model, &case.settings.nodes, CrackForm::Path).unwrap().chains.positions.len() as f64;
             let Layout::Graded(graded) = &case.settings.nodes.layout else { panic!() };
             let estimated = estimated_nodes(&case.model.domain, &SpacingField::of_model(&case.model, graded));
             assert!(estimated / n > 0.5 && estimated / n < 1.5, "{text}: {estimated} for {n}");
@@ -102,7 +103,7 @@ mod tests {
         for spacing in [1e-9, 1e-200, 5e-4] {
             let graded = Graded { spacing: Some(spacing), tip_spacing: None, growth: None };
             let settings = NodeSettings { layout: Layout::Graded(graded), star: None };
-            let error = generate(&model, &settings).unwrap_err().to_string();
+            let error = generate(&model, &settings, CrackForm::Path).unwrap_err().to_string();
             assert!(error.contains("more than 2000000 nodes"), "{error}");
         }
         // Fine along a small part only, but over a long way.

@@ -154,6 +154,13 @@ impl Chains {
         }
     }
 
+    /// The points along a crack, from its start to its end.
+    pub fn positions_along(&self, crack: usize) -> Vec<Vector2> {
+        let pieces = || self.crack_pieces.iter().filter(|p| p.crack == crack);
+        let points = pieces().take(1).map(|p| p.points[0]).chain(pieces().map(|p| p.points[1]));
+        points.map(|i| self.positions[i as usize]).collect()
+    }
+
     fn find_or_push(&mut self, p: Vector2, spacing: &SpacingField, nodes: CrackNodes) -> u32 {
         let h = spacing.at(p);
         match self.positions.iter().position(|q| (q - p).norm() <= 1e-6 * h) {

@@ -2,10 +2,12 @@
 
 use super::budget;
 use super::chains::{Chains, CrackNodes};
+use super::crack_clearance::CrackClearance;
 use super::fill::fill;
 use super::settings::{Layout, NodeSettings, Star};
 use super::spacing::SpacingField;
 use super::triangulation::{Triangulation, inner_triangles};
+use crate::crack::{CrackForm, CrackParticles};
 use crate::error::Result;
 use crate::math::{Vector2, direction};
 use crate::model::Model;
@@ -15,8 +17,9 @@ use std::f64::consts::{PI, TAU};
 pub const MAX_NODES: usize = 2_000_000;
 /// Rounds of smoothing of the irregular nodes.
 const SMOOTHING_ROUNDS: usize = 4;
-/// A grid node nearer to the boundary than this, over the spacing, gives way to the boundary's own nodes.
-const BOUNDARY_CLEARANCE: f64 = 0.4;
+/// A grid node nearer to the boundary than this, over the spacing, gives way to the boundary's own nodes; to particles of
+/// cracks, too.
+pub(super) const BOUNDARY_CLEARANCE: f64 = 0.4;
 
 /// Points of a layout and the triangles between them.
 #[derive(Clone, Debug)]
@@ -27,13 +30,15 @@ pub struct Layered {
     pub triangulation: Triangulation,
     /// Steps of the grid, if the nodes are regular.
     pub grid_step: Option<Vector2>,
+    /// Particles of each crack; none where cracks are paths.
+    pub particles: Vec<CrackParticles>,
 }
 
 /// Places irregular nodes at a given spacing.
 ///
 /// # Errors
 /// [`Error::NodeGeneration`](crate::error::Error::NodeGeneration).
-pub fn generate_at(model: &Model, spacing: &SpacingField, star: Option<&Star>) -> Result<Layered> {
+pub fn generate_at(model: &Model, spacing: &SpacingField, star: Option<&Star>, form: CrackForm) -> Result<Layered> {
     budget::check(&model.domain, spacing)?;
     let mut chains = Chains::default();
     chains.add_boundary(model, &|p, _| spacing.at(p));
@@ -41,12 +46,20 @@ pub fn generate_at(model: &Model, spacing: &SpacingField, star: Option<&Star>) -
     let known = chains.positions.len();
     chains.add_cracks(model, spacing, CrackNodes::AtSpacing, known);
     fill_irregular(&mut chains, model, spacing, &stars)?;
-    let triangulation = Triangulation::new(&chains)?;
-    Ok(Layered { chains, triangulation, grid_step: None })
+    layered(model, chains, None, form)
 }
 
 /// Places the nodes of a model.
-pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
+///
+/// # Errors
+/// [`Error::NodeGeneration`](crate::error::Error::NodeGeneration).
+pub fn generate(model: &Model, settings: &NodeSettings, form: CrackForm) -> Result<Layered> {
+    // Irregular nodes are put along cracks anyway.
+    let on_cracks = match form {
+        CrackForm::Path => CrackNodes::WhereTheyStand,
+        CrackForm::Particles => CrackNodes::AtSpacing,
+    };
+    let clearance = CrackClearance::new(model, form);
     let mut chains = Chains::default();
     let mut grid_step = None;
     match &settings.layout {
@@ -54,7 +67,7 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
             if let Some(largest) = graded.spacing {
                 budget::check_everywhere(&model.domain, largest)?;
             }
-            return generate_at(model, &SpacingField::of_model(model, graded), settings.star.as_ref());
+            return generate_at(model, &SpacingField::of_model(model, graded), settings.star.as_ref(), form);
         }
         Layout::Structured(grid) => {
             let bounds = model.domain.aabb();
@@ -67,9 +80,9 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
                 (0..grid.nx).map(move |i| Vector2::new(bounds.lower.x + step.x * i as f64, y))
             });
             let spacing = SpacingField::uniform(step.min());
-            add_free(&mut chains, model, &stars, positions, &spacing);
+            add_free(&mut chains, model, &stars, positions, &spacing, &clearance);
             let known = chains.positions.len();
-            chains.add_cracks(model, &spacing, CrackNodes::WhereTheyStand, known);
+            chains.add_cracks(model, &spacing, on_cracks, known);
         }
         Layout::Listed(listed) => {
             let positions: Vec<Vector2> = listed.positions.iter().map(|p| Vector2::new(p[0], p[1])).collect();
@@ -77,13 +90,23 @@ pub fn generate(model: &Model, settings: &NodeSettings) -> Result<Layered> {
             let spacing = SpacingField::of_nodes(&positions, mean);
             chains.add_boundary(model, &|p, _| spacing.at(p));
             let stars = add_stars(&mut chains, model, settings.star.as_ref());
-            add_free(&mut chains, model, &stars, positions.into_iter(), &spacing);
+            add_free(&mut chains, model, &stars, positions.into_iter(), &spacing, &clearance);
             let known = chains.positions.len();
-            chains.add_cracks(model, &spacing, CrackNodes::WhereTheyStand, known);
+            chains.add_cracks(model, &spacing, on_cracks, known);
         }
     }
+    layered(model, chains, grid_step, form)
+}
+
+fn layered(model: &Model, chains: Chains, grid_step: Option<Vector2>, form: CrackForm) -> Result<Layered> {
     let triangulation = Triangulation::new(&chains)?;
-    Ok(Layered { chains, triangulation, grid_step })
+    let particles = match form {
+        CrackForm::Path => vec![],
+        CrackForm::Particles => (model.cracks.iter().enumerate())
+            .map(|(index, crack)| CrackParticles::new(crack, &chains.positions_along(index)))
+            .collect(),
+    };
+    Ok(Layered { chains, triangulation, grid_step, particles })
 }
 
 /// A disk in which only the star's own nodes stand.
@@ -116,18 +139,20 @@ fn add_stars(chains: &mut Chains, model: &Model, star: Option<&Star>) -> Vec<Dis
     disks
 }
 
-/// Adds given nodes that lie inside, clear of the boundary and of the stars.
+/// Adds given nodes that lie inside, clear of the boundary, of the stars and of what else asks for room.
 fn add_free(
     chains: &mut Chains,
     model: &Model,
     stars: &[Disk],
     positions: impl Iterator<Item = Vector2>,
     spacing: &SpacingField,
+    clearance: &CrackClearance,
 ) {
     for p in positions {
         let h = spacing.at(p);
         let in_star = stars.iter().any(|(center, radius)| (p - center).norm() <= *radius);
-        if !in_star && model.domain.distance_to_boundary(p) > BOUNDARY_CLEARANCE * h && model.domain.contains(p) {
+        let is_clear = !in_star && clearance.admits(p, h);
+        if is_clear && model.domain.distance_to_boundary(p) > BOUNDARY_CLEARANCE * h && model.domain.contains(p) {
             chains.push(p, true, h);
         }
     }
@@ -172,4 +197,50 @@ fn smooth(chains: &mut Chains, n_fixed: usize) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Case;
+    use crate::geometry::predicates::distance_to_segment;
+
+    fn check_particles(path: &str) {
+        let text = format!(
+            "rigid_motion = 'mean-is-zero'
+            material = {{ young = 1, poisson = 0.3, plane = 'strain' }}
+            geometry.rectangle = {{ lower = [0, 0], upper = [2, 2] }}
+            crack = [{{ path = {path} }}]
+            remote_stress.yy = 1
+            nodes.layout.structured = {{ nx = 21, ny = 21 }}"
+        );
+        let case = Case::parse(&text, "case.toml".as_ref(), &[]).unwrap();
+        let crack = &case.model.cracks[0];
+        let found = generate(&case.model, &case.settings.nodes, CrackForm::Particles).unwrap();
+        let [particles] = &found.particles[..] else { panic!("one crack") };
+        assert_eq!(&particles.union(), crack, "{path}");
+        let places: Vec<Vector2> = particles.particles.iter().map(|p| p.position).collect();
+        for w in places.windows(2) {
+            let h = (w[1] - w[0]).norm();
+            assert!(h > 0.039 && h < 0.141, "{path}: {h}");
+        }
+        for (p, is_node) in found.chains.positions.iter().zip(&found.chains.is_node) {
+            let off = crack.segments().map(|(a, b)| distance_to_segment(*p, a, b)).fold(f64::INFINITY, f64::min);
+            let is_particle = places.contains(p);
+            assert!(*is_node, "{path}: {p}");
+            assert!(is_particle == (off < 1e-12), "{path}: {p} {off}");
+            // Boundary nodes stay.
+            let on_rim = case.model.domain.distance_to_boundary(*p) < 1e-12;
+            assert!(is_particle || on_rim || off > 0.039, "{path}: {p} {off}");
+        }
+    }
+
+    #[test]
+    fn a_grid_gets_particles_along_cracks() {
+        // On grid nodes with the tip on one and between two; askew; bent.
+        check_particles("[[0, 1], [1, 1]]");
+        check_particles("[[0, 1], [1.03, 1]]");
+        check_particles("[[0, 0.73], [1.37, 1.11]]");
+        check_particles("[[0.31, 0.4], [0.92, 1.33], [1.6, 1.3]]");
+    }
 }

@@ -7,9 +7,11 @@
 mod budget;
 pub mod chains;
 pub mod cloud;
+mod crack_clearance;
 pub mod fill;
 pub mod generation;
 mod ligaments;
+mod scaling;
 pub mod settings;
 pub mod solid;
 mod source_tree;

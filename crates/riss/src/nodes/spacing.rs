@@ -33,7 +33,7 @@ const CHANGE_FRACTIONS: [f64; 2] = [1.0 / 3.0, 1.0 / 12.0];
 /// Turn of a crack or an outline below which a vertex is smooth [rad].
 const SMOOTH_TURN: f64 = 0.2;
 /// Default growth of the spacing with distance.
-const GROWTH: f64 = 0.2;
+pub(super) const GROWTH: f64 = 0.2;
 
 /// A spacing that every point of the body can be asked for.
 #[derive(Clone, Debug)]

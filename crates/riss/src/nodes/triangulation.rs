@@ -50,6 +50,13 @@ impl Triangulation {
         self.positions[self.copies[copy as usize].point as usize]
     }
 
+    /// Mean length of the edges at the point next to a place [length].
+    pub fn spacing_at(&self, place: Vector2) -> f64 {
+        let away = |i: usize| (self.positions[i] - place).norm_squared();
+        let nearest = (0..self.positions.len()).min_by(|a, b| away(*a).total_cmp(&away(*b)));
+        nearest.map_or(f64::INFINITY, |i| self.edge_length[i])
+    }
+
     /// Triangulates the points of `chains`; segments of the boundary and pieces of cracks become edges.
     pub fn new(chains: &Chains) -> Result<Self> {
         let triangles = inner_triangles(chains)?;

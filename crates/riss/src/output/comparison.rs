@@ -179,6 +179,8 @@ mod tests {
                 k1: Some(k1),
                 k2: Some(k2),
                 k_uncertainty: Some(0.01),
+                k1_direct: None,
+                k2_direct: None,
                 ..TipRecord::unknown(End::End, frame)
             };
             let ends = [EndKind::Mouth, EndKind::Tip];
@@ -196,6 +198,7 @@ mod tests {
         let info = RunInfo {
             title: "t".into(),
             method: "m".into(),
+            units: None,
             status: RunStatus::Done,
             wall_time_s: 0.0,
             stage_time_s: vec![],

@@ -2,12 +2,14 @@
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
-//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`], [`whole_file`];
-//! for solids [`solid_results`], [`solid_files`], [`solid_picture`].
+//! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
+//! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
+//! [`solid_picture`].
 
 mod color_map;
 pub mod comparison;
 mod contours;
+pub mod convergence;
 pub mod exports;
 pub mod field_picture;
 pub mod fields;
@@ -15,6 +17,7 @@ pub mod history;
 pub mod model_picture;
 pub mod report;
 pub mod results;
+pub mod run_table;
 pub mod run_writer;
 pub mod shape_picture;
 pub mod solid_files;
@@ -25,6 +28,7 @@ mod vtk;
 pub mod whole_file;
 
 pub use comparison::Comparison;
+pub use convergence::write_convergence;
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use model_picture::write_model_picture;
 pub use report::{REPORT_FILE, RunSource, write_report};
@@ -36,6 +40,7 @@ pub use solid_picture::solid_picture;
 pub use solid_results::{SolidResults, solid_results_schema};
 
 use crate::analysis::StaticResult;
+use crate::model::UnitNames;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -54,6 +59,8 @@ pub struct RunInfo {
     pub title: String,
     /// Name of the method.
     pub method: String,
+    /// Units, if the case says them.
+    pub units: Option<UnitNames>,
     /// How the run ended.
     pub status: RunStatus,
     /// Time from start to end [s].

@@ -8,6 +8,7 @@ use crate::analysis::{
 };
 use crate::crack::{End, EndKind};
 use crate::math::Vector2;
+use crate::model::UnitNames;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,9 @@ pub struct Results {
     pub case: String,
     /// Name of the method.
     pub method: String,
+    /// Units of all numbers, if the case says them.
+    #[serde(default)]
+    pub units: Option<UnitNames>,
     /// How the run ended.
     pub status: RunStatus,
     /// Number of nodes in the last step.
@@ -143,6 +147,12 @@ pub struct TipResults {
     /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
+    /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` enrichment [stress·√length].
+    #[serde(rename = "K_I_direct")]
+    pub k1_direct: Option<f64>,
+    /// Mode II factor that was solved for as an unknown, with `extrinsic-mls` enrichment [stress·√length].
+    #[serde(rename = "K_II_direct")]
+    pub k2_direct: Option<f64>,
     /// J-integral [stress·length].
     #[serde(rename = "J")]
     pub j: Option<f64>,
@@ -182,6 +192,7 @@ impl Results {
             riss: env!("CARGO_PKG_VERSION").into(),
             case: info.title.clone(),
             method: info.method.clone(),
+            units: info.units.clone(),
             status: info.status,
             nodes: last.n_nodes,
             unknowns: last.n_unknowns,
@@ -258,6 +269,8 @@ impl TipResults {
             k1: tip.k1.and_then(finite),
             k2: tip.k2.and_then(finite),
             k_uncertainty: tip.k_uncertainty.and_then(finite),
+            k1_direct: tip.k1_direct.and_then(finite),
+            k2_direct: tip.k2_direct.and_then(finite),
             j: tip.j.and_then(finite),
             t_stress: tip.t_stress.and_then(finite),
             configurational_force: tip.configurational_force.and_then(finite_pair),

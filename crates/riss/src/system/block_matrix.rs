@@ -92,6 +92,14 @@ impl BlockMatrix {
         result
     }
 
+    /// Leaves the rows and columns of the first nodes alone.
+    pub fn truncate(&mut self, n_nodes: usize) {
+        self.row_starts.truncate(n_nodes + 1);
+        let n = self.row_starts[n_nodes];
+        self.columns.truncate(n);
+        self.blocks.truncate(n);
+    }
+
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
         self.row_starts.len() - 1

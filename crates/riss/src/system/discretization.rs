@@ -6,6 +6,7 @@ use crate::approximation::moving_least_squares::{Derivatives, support_radii};
 use crate::approximation::{
     ApproximationSettings, CrackSmoothing, Enrichment, MovingLeastSquares, SpacingFrom, Surroundings,
 };
+use crate::crack::CrackParticles;
 use crate::error::Result;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
@@ -17,6 +18,7 @@ use crate::math::Vector2;
 use crate::model::Model;
 use crate::nodes::support::neighbor_distances;
 use crate::nodes::{Layered, Nodes, Triangulation};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Lists of node indices, one after the other.
@@ -77,7 +79,9 @@ pub struct Discretization {
     pub boundary: Vec<BoundaryElement>,
     /// Elements along cracks whose faces something acts on.
     pub crack_faces: Vec<CrackFaceElement>,
-    /// Neighbors of each cell.
+    /// Particles of each crack; none where cracks are paths.
+    pub particles: Vec<CrackParticles>,
+    /// Neighbors of each cell, additional functions included.
     pub cell_nodes: NodeLists,
     /// Neighbors of each boundary element.
     pub boundary_nodes: NodeLists,
@@ -96,11 +100,12 @@ impl Discretization {
         approximation: &ApproximationSettings,
         integration: &IntegrationSettings,
     ) -> Result<Self> {
-        let Layered { chains, triangulation, grid_step } = layered;
+        let Layered { chains, triangulation, grid_step, particles } = layered;
         let (mut nodes, mut node_of_copy) = nodes_of(&triangulation, &chains.is_node);
-        let obstacles = visibility_obstacles(model, &triangulation);
+        let seen = &as_particles_say(model, &particles);
+        let obstacles = visibility_obstacles(seen, &triangulation);
         let smoothing = approximation.resolved_smoothing();
-        let barriers = barriers(model, &triangulation, &smoothing);
+        let barriers = barriers(seen, &triangulation, &smoothing);
         let (enrichment, notes) = Enrichment::of_model(model, &approximation.enrichment);
         set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
         if let Some(enrichment) = &enrichment {
@@ -140,6 +145,7 @@ impl Discretization {
             cells,
             boundary,
             crack_faces,
+            particles,
             cell_nodes,
             boundary_nodes,
             notes,
@@ -149,6 +155,11 @@ impl Discretization {
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
         self.approximation.nodes().len()
+    }
+
+    /// Number of functions, each with two unknowns: those of nodes, and further ones of enriched nodes.
+    pub fn n_functions(&self) -> usize {
+        self.approximation.n_functions()
     }
 
     /// From where a given point sees: slightly inside if it lies on the boundary.
@@ -166,6 +177,14 @@ impl Discretization {
         // Toward where the nearest boundary node sees from: inside, at corners too.
         let q = self.triangulation.positions[copy.point as usize];
         p + (copy.sight - q)
+    }
+}
+
+/// The model with its cracks as the particles on them describe them.
+fn as_particles_say<'m>(model: &'m Model, particles: &[CrackParticles]) -> Cow<'m, Model> {
+    match particles {
+        [] => Cow::Borrowed(model),
+        _ => Cow::Owned(Model { cracks: particles.iter().map(CrackParticles::union).collect(), ..model.clone() }),
     }
 }
 

@@ -16,6 +16,8 @@ use rayon::prelude::*;
 
 /// Cells whose matrices are computed in parallel before they are added in order.
 const BATCH: usize = 2048;
+/// Added to the diagonal of additional functions, over the diagonal.
+const REGULARIZATION: f64 = 1e-11;
 
 /// The assembled system, per unit thickness.
 #[derive(Clone, Debug)]
@@ -28,7 +30,7 @@ pub struct LinearSystem {
 
 /// Assembles cells, boundary and crack face loads, springs and supports.
 pub fn assemble(model: &Model, discrete: &Discretization, method: &ConstraintMethod) -> Result<LinearSystem> {
-    let n = discrete.n_nodes();
+    let n = discrete.n_functions();
     let extra = constraints::point_lists(model, discrete)?;
     let lists = [&discrete.cell_nodes, &discrete.boundary_nodes, &extra];
     let mut system = LinearSystem { matrix: BlockMatrix::of_pattern(n, &lists), load: vec![0.0; 2 * n] };
@@ -40,6 +42,9 @@ pub fn assemble(model: &Model, discrete: &Discretization, method: &ConstraintMet
     })?;
     constraints::add_point_loads(model, discrete, &mut system.load)?;
     crack_faces::add_face_loads(model, discrete, &mut system.load)?;
+    if discrete.approximation.tied_tips().is_empty() {
+        system.regularize(discrete.n_nodes());
+    }
     Ok(system)
 }
 
@@ -59,6 +64,18 @@ pub struct Scratch {
 }
 
 impl LinearSystem {
+    /// Makes the parameters of additional functions, those from `first` on, unique.
+    ///
+    /// Where all nodes around are enriched, `Σ φ_I x_I F = x F`, and the functions of a tip are dependent by
+    /// `y F_4 - x F_3 = y F_2` and `y F_3 + x F_4 = y F_1`. Such parts of the solution are nothing but zero, and a little
+    /// stiffness keeps their parameters small.
+    fn regularize(&mut self, first: usize) {
+        for dof in 2 * first..self.load.len() {
+            let diagonal = self.matrix.blocks[self.matrix.row_starts[dof / 2 + 1] - 1][3 * (dof % 2)];
+            self.matrix.add_diagonal(dof, REGULARIZATION * diagonal);
+        }
+    }
+
     /// Computes `n` local matrices in parallel and adds them in order.
     pub(super) fn add(
         &mut self,

@@ -8,7 +8,7 @@ use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, IntranodeLbltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::traits::ComplexField;
@@ -213,82 +213,101 @@ fn conjugate_gradients(
     Err(Error::Residual { residual: dot(&r, &r).sqrt() / size, allowed: ITERATION_TARGET })
 }
 
-/// Solves the saddle point problem of a matrix with constraint rows, which may be indefinite, by LBLᵀ with pivoting
-/// inside supernodes. Returns dofs and multipliers.
-///
-/// Each multiplier is eliminated right after the last of its nodes, so that its pivot is filled by then.
-pub fn solve_with_multipliers(
-    matrix: &BlockMatrix,
-    order: &[u32],
-    rows: &[ConstraintRow],
-    load: &[f64],
-) -> Result<(Vec<f64>, Vec<f64>)> {
-    let (n, m) = (2 * matrix.n_nodes(), rows.len());
-    // The multipliers are scaled to the stiffness, so that pivots compare.
-    let scale = matrix.largest_diagonal();
-    let (mut starts, mut indices, mut values) = upper_columns(matrix, |v, _, _| v);
-    for (k, row) in rows.iter().enumerate() {
-        let largest = row.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()));
-        for &(dof, v) in &row.entries {
-            indices.push(dof);
-            values.push(v * scale / largest);
+/// A factored saddle point problem of a matrix with constraint rows, which may be indefinite: LBLᵀ with pivoting inside
+/// supernodes.
+pub struct SaddleFactor {
+    sparse: SparseColMat<usize, f64>,
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+    subdiagonal: Vec<f64>,
+    pivots: [Vec<usize>; 2],
+    /// Number of dofs.
+    n: usize,
+    /// Factor of each constraint row.
+    scales: Vec<f64>,
+}
+
+impl SaddleFactor {
+    /// Factors; each multiplier is eliminated right after the last of its nodes, so that its pivot is filled by then.
+    ///
+    /// # Errors
+    /// [`Error::Factorization`] if there is no memory for the factor.
+    pub fn new(matrix: &BlockMatrix, order: &[u32], rows: &[ConstraintRow]) -> Result<Self> {
+        let (n, m) = (2 * matrix.n_nodes(), rows.len());
+        // The multipliers are scaled to the stiffness, so that pivots compare.
+        let stiffness = matrix.largest_diagonal();
+        let largest = |row: &ConstraintRow| row.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()));
+        let scales: Vec<f64> = rows.iter().map(|row| stiffness / largest(row)).collect();
+        let (mut starts, mut indices, mut values) = upper_columns(matrix, |v, _, _| v);
+        for (k, row) in rows.iter().enumerate() {
+            for &(dof, v) in &row.entries {
+                indices.push(dof);
+                values.push(v * scales[k]);
+            }
+            indices.push(n + k);
+            values.push(0.0);
+            starts.push(indices.len());
         }
-        indices.push(n + k);
-        values.push(0.0);
-        starts.push(indices.len());
+        let size = n + m;
+        let sparse = SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, starts, None, indices), values);
+        let mut position = vec![0; matrix.n_nodes()];
+        order.iter().enumerate().for_each(|(p, &i)| position[i as usize] = p);
+        let mut after: Vec<Vec<usize>> = vec![vec![]; matrix.n_nodes()];
+        for (k, row) in rows.iter().enumerate() {
+            let last = row.entries.iter().map(|e| position[e.0 / 2]).max().unwrap_or(0);
+            after[last].push(n + k);
+        }
+        let mut full = Vec::with_capacity(size);
+        for (p, &i) in order.iter().enumerate() {
+            full.extend([2 * i as usize, 2 * i as usize + 1]);
+            full.extend(&after[p]);
+        }
+        let symbolic = symbolic_factor(&sparse, &full, &invert(&full))?;
+        let (mut values, mut subdiagonal) = (vec![0.0; symbolic.len_val()], vec![0.0; size]);
+        let (mut forward, mut backward) = (vec![0; size], vec![0; size]);
+        let mut memory =
+            MemBuffer::new(symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default()));
+        symbolic.factorize_numeric_intranode_lblt(
+            &mut values,
+            &mut subdiagonal,
+            &mut forward,
+            &mut backward,
+            sparse.as_ref(),
+            Side::Upper,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        Ok(Self { sparse, symbolic, values, subdiagonal, pivots: [forward, backward], n, scales })
     }
-    let size = n + m;
-    let sparse = SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, starts, None, indices), values);
-    let mut position = vec![0; matrix.n_nodes()];
-    order.iter().enumerate().for_each(|(p, &i)| position[i as usize] = p);
-    let mut after: Vec<Vec<usize>> = vec![vec![]; matrix.n_nodes()];
-    for (k, row) in rows.iter().enumerate() {
-        let last = row.entries.iter().map(|e| position[e.0 / 2]).max().unwrap_or(0);
-        after[last].push(n + k);
+
+    /// Dofs and multipliers under a load, with given values of the constraint rows.
+    ///
+    /// # Errors
+    /// [`Error::Factorization`] if rows are redundant or contradict one another.
+    pub fn solve(&self, load: &[f64], values: &[f64]) -> Result<(Vec<f64>, Vec<f64>)> {
+        let size = self.n + self.scales.len();
+        let [forward, backward] = &self.pivots;
+        let pivots = PermRef::new_checked(forward, backward, size);
+        let factor = IntranodeLbltRef::new(&self.symbolic, &self.values, &self.subdiagonal, pivots);
+        let scaled = values.iter().zip(&self.scales).map(|(v, s)| v * s);
+        let right: Vec<f64> = load.iter().copied().chain(scaled).collect();
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let mut x = vec![0.0; size];
+        // Refinement: pivoting inside supernodes may cost some digits.
+        for _ in 0..3 {
+            let product = multiply_upper(&self.sparse, &x);
+            let mut step = Mat::from_fn(size, 1, |i, _| right[i] - product[i]);
+            factor.solve_in_place_with_conj(Conj::No, step.as_mut(), Par::Seq, MemStack::new(&mut memory));
+            (0..size).for_each(|i| x[i] += step[(i, 0)]);
+        }
+        if x.iter().any(|v| !v.is_finite()) {
+            return Err(Error::Factorization { reason: "a constraint is redundant or contradicts another".into() });
+        }
+        let multipliers = self.scales.iter().zip(&x[self.n..]).map(|(s, v)| v * s).collect();
+        x.truncate(self.n);
+        Ok((x, multipliers))
     }
-    let mut full = Vec::with_capacity(size);
-    for (p, &i) in order.iter().enumerate() {
-        full.extend([2 * i as usize, 2 * i as usize + 1]);
-        full.extend(&after[p]);
-    }
-    let symbolic = symbolic_factor(&sparse, &full, &invert(&full))?;
-    let mut factor = vec![0.0; symbolic.len_val()];
-    let (mut subdiagonal, mut forward, mut backward) = (vec![0.0; size], vec![0usize; size], vec![0usize; size]);
-    let mut memory =
-        MemBuffer::new(symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default()));
-    let lblt = symbolic.factorize_numeric_intranode_lblt(
-        &mut factor,
-        &mut subdiagonal,
-        &mut forward,
-        &mut backward,
-        sparse.as_ref(),
-        Side::Upper,
-        Par::Seq,
-        MemStack::new(&mut memory),
-        Default::default(),
-    );
-    let right: Vec<f64> = load
-        .iter()
-        .copied()
-        .chain(rows.iter().map(|r| r.value * scale / r.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()))))
-        .collect();
-    let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-    let mut x = vec![0.0; size];
-    // Refinement: pivoting inside supernodes may cost some digits.
-    for _ in 0..3 {
-        let product = multiply_upper(&sparse, &x);
-        let mut step = Mat::from_fn(size, 1, |i, _| right[i] - product[i]);
-        lblt.solve_in_place_with_conj(Conj::No, step.as_mut(), Par::Seq, MemStack::new(&mut memory));
-        (0..size).for_each(|i| x[i] += step[(i, 0)]);
-    }
-    if x.iter().any(|v| !v.is_finite()) {
-        return Err(Error::Factorization { reason: "a constraint is redundant or contradicts another".into() });
-    }
-    let multipliers =
-        rows.iter().zip(&x[n..]).map(|(r, v)| v * scale / r.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs())));
-    let multipliers = multipliers.collect();
-    x.truncate(n);
-    Ok((x, multipliers))
 }
 
 fn multiply_upper(matrix: &SparseColMat<usize, f64>, x: &[f64]) -> Vec<f64> {

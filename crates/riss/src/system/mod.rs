@@ -15,12 +15,14 @@ pub mod incomplete_factor;
 pub mod krylov;
 pub mod linear_solver;
 mod node_conditions;
+mod node_solver;
 pub mod ordering;
 pub mod rigid_motion;
 mod safeguard;
 pub mod settings;
 pub mod solve;
 pub mod sparse_lu;
+mod tip_factors;
 
 pub use collocation::{Collocation, CollocationSystem};
 pub use collocation_settings::{CollocationSettings, CollocationSolver, ConcaveCorners, FrontNodes};

@@ -174,7 +174,7 @@ pub struct MeanMotion {
     size: f64,
     /// `∫ r_i · r_j` over the body.
     mass: Matrix3<f64>,
-    /// `∫ φ_I` and first moments, node by node: `∫ φ_I (x - center)`.
+    /// `∫ φ_I` and first moments, function by function: `∫ φ_I (x - center)`.
     moments: Vec<(f64, Vector2)>,
 }
 
@@ -184,8 +184,12 @@ impl MeanMotion {
         let nodes = discrete.approximation.nodes();
         let center = nodes.positions.iter().sum::<Vector2>() / nodes.len() as f64;
         let size = nodes.positions.iter().map(|x| (x - center).norm()).fold(0.0, f64::max);
-        let mut result =
-            Self { center, size, mass: Matrix3::zeros(), moments: vec![(0.0, Vector2::zeros()); nodes.len()] };
+        let mut result = Self {
+            center,
+            size,
+            mass: Matrix3::zeros(),
+            moments: vec![(0.0, Vector2::zeros()); discrete.n_functions()],
+        };
         let mut scratch = Scratch::default();
         for cell in 0..discrete.cells.len() {
             discrete.approximation.survey(&discrete.cells.bounds(cell), &mut scratch.around);

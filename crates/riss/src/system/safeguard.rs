@@ -36,7 +36,7 @@ pub(super) struct Parts<'a> {
 /// What the points of one cell or element see.
 #[derive(Default)]
 struct Inspection {
-    /// All nodes that any of the points sees, ascending.
+    /// All functions that are not zero at any of the points, ascending.
     neighbors: Vec<u32>,
     /// Points whose moment matrix is poor.
     poor: Vec<Poor>,
@@ -78,6 +78,7 @@ fn inspect(
     }
     let visible = around.candidates.iter().zip(&seen).filter(|(_, seen)| **seen);
     result.neighbors = visible.map(|(i, _)| *i).collect();
+    approximation.append_functions(&mut result.neighbors);
     result
 }
 

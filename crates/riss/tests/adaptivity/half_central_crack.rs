@@ -17,7 +17,7 @@
 use crate::bodies::*;
 use crate::problems::pulled_by;
 use riss::adaptivity::AccuracySettings;
-use riss::analysis::{Refined, RefinementRecord, Silent, solve_refined};
+use riss::analysis::{Method, Refined, RefinementRecord, Settings, Silent, solve_refined};
 use riss::crack::EndKind;
 use riss::exact::CrackTipField;
 use riss::fracture::{
@@ -48,8 +48,8 @@ fn plate(k1: f64, k2: f64) -> Model {
 }
 
 /// Twelve refinements from 21×21 nodes on at most.
-fn refined(model: &Model, energy_percent: f64) -> Refined {
-    let settings = with_nodes(structured(21, 21));
+fn refined(model: &Model, method: Method, energy_percent: f64) -> Refined {
+    let settings = Settings { nodes: structured(21, 21), ..method.settings() };
     let accuracy = AccuracySettings { energy_percent: Some(energy_percent), ..AccuracySettings::default() };
     solve_refined(model, &settings, &accuracy, &mut Silent).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -74,9 +74,9 @@ fn check_value(what: &str, found: f64, paper: f64, exact: f64, size: f64) {
 }
 
 /// Every cell of a table, and 0.3 % from the exact value for the larger domains.
-fn check_table(k1: f64, k2: f64, table: &[Row]) {
+fn check_table(method: Method, k1: f64, k2: f64, table: &[Row]) {
     let model = plate(k1, k2);
-    let found = refined(&model, 0.5);
+    let found = refined(&model, method, 0.5);
     let field = SolutionField { discrete: &found.discrete, solution: &found.solution };
     let view = TipView::new(&model, model.tips()[0].0);
     let unit = unit_factor().powi(2) / STEEL.effective_young();
@@ -86,9 +86,10 @@ fn check_table(k1: f64, k2: f64, table: &[Row]) {
         for (j_integral, paper) in [(JIntegral::Contour, row.contour), (JIntegral::Domain, row.domain)] {
             let settings =
                 FractureSettings { domain: TipDomainShape::Square, j_integral, ..FractureSettings::default() };
-            let what = format!("{k1} {k2}, c/a = {} {j_integral:?}", row.size);
+            let what = format!("{method:?}, {k1} {k2}, c/a = {} {j_integral:?}", row.size);
             let radii = [row.size * A];
-            let force = configurational_forces(&view, &radii, &settings, &STEEL, None, &field).unwrap()[0];
+            let force =
+                configurational_forces(&view, &radii, &settings, &STEEL, &TipLoads::default(), &field).unwrap()[0];
             let tip = tip_integrals(&view, &radii, &settings, &STEEL, &TipLoads::default(), &field).unwrap()[0];
             let around = force.value(FaceTerm::LeftOut) / unit;
             let (error, paper) = ((around - exact).norm(), (Vector2::from(paper) - exact).norm());
@@ -110,8 +111,8 @@ fn check_table(k1: f64, k2: f64, table: &[Row]) {
     }
 }
 
-#[test]
-fn table_1_opening() {
+/// Table 1: opening.
+fn check_opening(method: Method) {
     let row = |size, contour, domain, k1: f64| Row {
         size,
         contour: [contour, 0.0],
@@ -121,18 +122,38 @@ fn table_1_opening() {
         j: k1,
     };
     let table = [row(0.5, 1.0038, 1.0017, 1.0011), row(0.1, 0.9992, 1.0040, 1.0026), row(0.01, 1.0025, 0.9812, 0.9901)];
-    check_table(1.0, 0.0, &table);
+    check_table(method, 1.0, 0.0, &table);
 }
 
 #[test]
-fn table_2_mixed_mode() {
+fn table_1_opening() {
+    check_opening(Method::ElementFreeGalerkin);
+}
+
+#[test]
+fn table_1_opening_with_cracking_particles() {
+    check_opening(Method::CrackingParticles);
+}
+
+/// Table 2: mixed mode.
+fn check_mixed_mode(method: Method) {
     let row = |size, contour, domain, faces, factors, j| Row { size, contour, domain, faces, factors, j };
     let table = [
         row(0.5, [1.9940, -1.9963], [1.9994, -2.0003], -0.0178, [0.9999, 1.0001], 2.0001),
         row(0.1, [2.0033, -2.0033], [1.9987, -2.0019], -0.0211, [0.9999, 0.9999], 1.9995),
         row(0.01, [2.0076, -2.0026], [1.9910, -1.9999], -0.1710, [0.9973, 0.9986], 1.9918),
     ];
-    check_table(1.0, 1.0, &table);
+    check_table(method, 1.0, 1.0, &table);
+}
+
+#[test]
+fn table_2_mixed_mode() {
+    check_mixed_mode(Method::ElementFreeGalerkin);
+}
+
+#[test]
+fn table_2_mixed_mode_with_cracking_particles() {
+    check_mixed_mode(Method::CrackingParticles);
 }
 
 fn last(refinements: &[RefinementRecord]) -> (f64, f64) {
@@ -151,7 +172,7 @@ fn refined_nodes_converge_at_the_optimal_rate_and_uniform_ones_do_not() {
     });
     let uniform_rate = -rate(&uniform);
     assert!((0.2..0.3).contains(&uniform_rate), "{uniform_rate} {uniform:?}");
-    let targets = [1.0, 0.5].map(|percent| last(&refined(&model, percent).refinements));
+    let targets = [1.0, 0.5].map(|percent| last(&refined(&model, Method::ElementFreeGalerkin, percent).refinements));
     let refined_rate = -rate(&targets);
     assert!(refined_rate >= 0.95 * 0.5, "{refined_rate} {targets:?}");
     // A tenth of the error of more than twice as many uniform nodes.

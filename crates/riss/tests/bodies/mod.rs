@@ -153,7 +153,7 @@ pub fn differences(model: &Model, field: &dyn ExactField, result: &StaticResult)
 pub fn displacement_error(model: &Model, settings: &Settings, result: &StaticResult) -> f64 {
     let exact = model.exact.as_ref().expect("the field is known");
     let discrete = discretize(model, settings, &mut Silent).expect("it was solved on this");
-    let parameters: Vec<Vector2> = result.nodes.iter().map(|n| n.parameters).collect();
+    let parameters = parameters(result);
     let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
     let (mut error, mut size) = (0.0, 0.0);
     for point in &discrete.cells.points {
@@ -190,7 +190,7 @@ pub fn reaction(result: &StaticResult, name: &str) -> Vector2 {
 /// Displacement at any point, from the nodal parameters.
 pub fn displacement_at(model: &Model, settings: &Settings, result: &StaticResult, at: Vector2) -> Vector2 {
     let discrete = discretize(model, settings, &mut Silent).expect("it was solved on this");
-    let parameters: Vec<Vector2> = result.nodes.iter().map(|n| n.parameters).collect();
+    let parameters = parameters(result);
     let (mut around, mut shape) = <(Surroundings, ShapeFunctions<2>)>::default();
     let sight = discrete.sight_at(model, at);
     let found = discrete.approximation.evaluate(at, sight, Derivatives::First, &mut around, &mut shape);
@@ -213,4 +213,9 @@ fn nearest(result: &StaticResult, at: (f64, f64)) -> usize {
     let positions = &result.fields.positions;
     let distance = |k: &usize| (positions[*k] - p).norm();
     (0..positions.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("there are vertices")
+}
+
+/// Nodal parameters, then those of additional functions.
+fn parameters(result: &StaticResult) -> Vec<Vector2> {
+    result.nodes.iter().map(|n| n.parameters).chain(result.extra_parameters.iter().copied()).collect()
 }

@@ -4,6 +4,7 @@ mod cracks;
 mod geometry;
 mod loads;
 mod robustness;
+mod values;
 
 use riss::case::{Case, CaseErrors};
 use std::path::Path;

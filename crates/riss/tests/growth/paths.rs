@@ -106,7 +106,7 @@ fn converged_increments_shorten_only_where_the_path_turns() {
         // A quarter of the turn is how far two half steps end from the whole one.
         assert!(0.25 * turn.abs() <= 0.02, "step {}: {turn}", record.step);
     }
-    let control = IncrementControl::HalvedOnTurns { angle_deg: 5.0 };
+    let control = IncrementControl::HalvedOnTurns { angle_deg: 5.0, least: 0.0625 };
     let growth = GrowthSettings { increment: Some(0.4), steps: 3, control, ..GrowthSettings::default() };
     let (steps, _) = grow(&sheared_plate(), &Settings::default(), &growth);
     let increments: Vec<f64> = (0..3).map(|k| steps.tip(k, 0).increment.expect("it grows")).collect();

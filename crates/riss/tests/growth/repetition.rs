@@ -27,7 +27,7 @@ fn everything() -> GrowthSettings {
         increment: Some(0.2),
         steps: 4,
         law: AdvanceLaw::Fatigue(Fatigue { rate, spectrum: LoadSpectrum::default() }),
-        control: IncrementControl::HalvedOnTurns { angle_deg: 6.0 },
+        control: IncrementControl::HalvedOnTurns { angle_deg: 6.0, least: 0.0625 },
         form: IncrementForm::Curved,
         ..GrowthSettings::default()
     }

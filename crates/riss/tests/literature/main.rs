@@ -5,6 +5,7 @@ mod bodies;
 mod closed_crack;
 mod energy_release;
 mod enrichment;
+mod extrinsic;
 mod junctions;
 mod near_tip;
 mod pressurized_crack;

@@ -4,6 +4,7 @@
 
 use crate::sample;
 use riss::analysis::StaticResult;
+use riss::model::UnitNames;
 use riss::output::{OutputOptions, REPORT_FILE, RunInfo, RunSource, RunWriter, write_report, write_results};
 use serde_json::Value;
 use std::path::Path;
@@ -89,7 +90,8 @@ fn what_the_user_wrote_is_never_markup() {
     result.step.cracks[0].name = ATTACK.into();
     result.step.reactions[0].0 = ATTACK.into();
     result.warnings[0].message = ATTACK.into();
-    let info = RunInfo { title: ATTACK.into(), ..sample::info() };
+    let units = UnitNames { length: ATTACK.into(), force: ATTACK.into(), stress: ATTACK.into() };
+    let info = RunInfo { title: ATTACK.into(), units: Some(units), ..sample::info() };
     let dir = tempfile::tempdir().unwrap();
     let mut writer = RunWriter::new(dir.path(), OutputOptions::default()).unwrap();
     let source = RunSource {
@@ -97,6 +99,7 @@ fn what_the_user_wrote_is_never_markup() {
         case_text: ATTACK.into(),
         overrides: vec![ATTACK.into()],
         platform: ATTACK.into(),
+        settings: vec![[ATTACK.into(), ATTACK.into()]],
         ..RunSource::default()
     };
     writer.describe(&source).unwrap();
@@ -111,6 +114,8 @@ fn what_the_user_wrote_is_never_markup() {
     assert_eq!(block(&page, "results")["case"], ATTACK);
     assert_eq!(block(&page, "results")["steps"][0]["cracks"][0]["name"], ATTACK);
     assert_eq!(block(&page, "run")["source"]["case_text"], ATTACK);
+    assert_eq!(block(&page, "run")["source"]["settings"][0][1], ATTACK);
+    assert_eq!(block(&page, "units")["stress"], ATTACK);
 }
 
 #[test]

@@ -19,6 +19,7 @@ pub fn info() -> RunInfo {
     RunInfo {
         title: "square, \"edge\" crack".into(),
         method: "efg".into(),
+        units: None,
         status: RunStatus::Done,
         wall_time_s: 1.5,
         stage_time_s: vec![("nodes".into(), 0.25), ("solve".into(), 0.5), ("solve".into(), 0.25)],
@@ -52,6 +53,7 @@ pub fn result(n: usize) -> StaticResult {
             k_error: Some(0.125),
             factors: vec![[FIELD.k1, f64::INFINITY]],
         }],
+        extra_parameters: vec![],
         nodes: fields
             .positions
             .iter()
@@ -76,6 +78,8 @@ fn crack() -> CrackRecord {
             k1: Some(FIELD.k1),
             k2: Some(f64::INFINITY),
             k_uncertainty: Some(0.01),
+            k1_direct: None,
+            k2_direct: None,
             j: Some(0.125),
             t_stress: None,
             configurational_force: Some(Vector2::new(0.125, f64::NAN)),

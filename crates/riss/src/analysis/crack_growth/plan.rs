@@ -14,7 +14,7 @@ const CLOSURE: f64 = 0.01;
 const SHADOW: f64 = 0.01;
 /// Growth shorter than this part of the step's increment is saved up.
 const LEAST_SHARE: f64 = 0.05;
-/// The increment is never halved below this share.
+/// An increment that converges is never halved below this share.
 pub(super) const LEAST_SCALE: f64 = 1.0 / 16.0;
 
 /// A tip that grows.
@@ -105,11 +105,11 @@ fn judge(model: &Model, growth: &GrowthSettings, tip: &mut TipRecord, held: bool
 
 /// Share of the increment after the turns of this step.
 fn control(control: IncrementControl, step: &StepRecord, state: &mut GrowthState) {
-    let IncrementControl::HalvedOnTurns { angle_deg } = control else { return };
+    let IncrementControl::HalvedOnTurns { angle_deg, least } = control else { return };
     let turns = open_tips(step).filter_map(|(_, t)| t.kink_angle);
     let turn = turns.fold(0.0, |m: f64, t| m.max(t.abs())).to_degrees();
     if turn > angle_deg {
-        state.scale = (0.5 * state.scale).max(LEAST_SCALE);
+        state.scale = (0.5 * state.scale).max(least.min(state.scale));
     } else if turn < 0.5 * angle_deg {
         state.scale = (2.0 * state.scale).min(1.0);
     }

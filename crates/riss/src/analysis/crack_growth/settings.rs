@@ -106,11 +106,15 @@ pub enum IncrementControl {
     /// The same in every step.
     #[default]
     Fixed,
-    /// Halved in a step in which a tip turns by more than an angle [CPM, section 3.2], down to 1/16; doubled again where no tip turns by half of it.
+    /// Halved in a step in which a tip turns by more than an angle [CPM, section 3.2]; doubled again where no tip turns by half of it.
     HalvedOnTurns {
         /// The angle [degrees], positive; 5 in [CPM, section 3.2].
         #[schemars(range(min = 0.0, max = 90.0))]
         angle_deg: f64,
+        /// Share of the increment at which no turn halves it any more, above 0 and at most 1; 0.5 in [CPM, section 3.2].
+        #[serde(default = "least_share")]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        least: f64,
     },
     /// Halved, down to 1/16, until a step ends where two of half the length would; doubled again after steps that are four times better: the path is converged step by step.
     Converged {
@@ -118,6 +122,11 @@ pub enum IncrementControl {
         #[schemars(range(min = 0.0, max = 1.0))]
         tolerance: f64,
     },
+}
+
+/// Four halvings.
+fn least_share() -> f64 {
+    1.0 / 16.0
 }
 
 /// Form of an increment.

@@ -20,8 +20,9 @@ pub(super) fn check(growth: &GrowthSettings, model: &Model, report: &mut Report)
     }
     match growth.control {
         IncrementControl::Fixed => {}
-        IncrementControl::HalvedOnTurns { angle_deg } => {
+        IncrementControl::HalvedOnTurns { angle_deg, least } => {
             report.positive("growth.control.halved-on-turns.angle_deg", angle_deg);
+            report.positive("growth.control.halved-on-turns.least", least);
         }
         IncrementControl::Converged { tolerance } => {
             report.positive("growth.control.converged.tolerance", tolerance);

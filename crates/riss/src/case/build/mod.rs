@@ -5,20 +5,24 @@ mod cracks;
 mod crossings;
 mod exact;
 mod growth;
+mod import;
 mod loads;
 mod mesh;
+mod method;
 mod outline;
 mod parts;
+mod plausibility;
 pub(super) mod report;
 mod settings;
 mod supports;
 
+use super::abaqus::AbaqusModel;
 use super::document::Document;
 use super::problem::Problem;
 use super::schema::{self, CaseFile, OutputSettings};
 use crate::analysis::{GrowthSettings, Settings};
 use crate::material::Elasticity;
-use crate::model::{Domain, Model, RigidMotion};
+use crate::model::{Domain, Model, RigidMotion, UnitNames};
 use boundary::Boundary;
 use loads::Setting;
 use report::Report;
@@ -28,22 +32,38 @@ use std::path::Path;
 /// The name that stands for every outer edge.
 const OUTLINE: &str = "outline";
 
-/// Model, settings, growth, output and notes.
-type Built = (Model, Settings, Option<GrowthSettings>, OutputSettings, Vec<Problem>);
+/// What a case means.
+pub(super) struct Built {
+    pub model: Model,
+    pub settings: Settings,
+    pub growth: Option<GrowthSettings>,
+    pub output: OutputSettings,
+    pub units: Option<UnitNames>,
+    pub notes: Vec<Problem>,
+}
 
 /// What a case means; `None` or more problems if it is not valid.
-pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
-    let faulty = super::check::check(document, &super::json_schema(), problems);
-    let file = deserialize(document, &faulty, problems)?;
+pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
+    let schema = super::plain_schema();
+    let values = super::values::resolve(document, &schema, problems);
     let folder = path.parent().unwrap_or(Path::new(""));
+    let imported = import::import(document, folder, problems)?;
+    let document = &*document;
+    let mut faulty = super::check::check(document, &schema, problems);
+    faulty.extend(values.faulty);
+    let mut file = deserialize(document, &faulty, problems)?;
     let mut report = Report::new(document, problems);
+    for remark in imported.iter().flat_map(|m| &m.remarks) {
+        report.note(import::KEY, remark);
+    }
+    method::complete(&mut file, &mut report);
     let material = material(&file.material, &mut report);
     let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
     let mut settings = settings::settings(&file, folder, &mut report);
     if ["geometry", "hole", "part"].iter().any(|key| faulty.contains(*key)) {
         return None;
     }
-    let domain = domain(&file, folder, &mut report)?;
+    let domain = domain(&file, imported.as_ref(), folder, &mut report)?;
     settings::check_layout(&mut settings, &file, &domain, &mut report);
     let cracks = cracks::cracks(&file.crack, &domain, &mut report);
     if let Some(contact) = &file.contact {
@@ -86,7 +106,14 @@ pub(super) fn build(document: &Document, path: &Path, problems: &mut Vec<Problem
     if let Some(growth) = &file.growth {
         growth::check(growth, &model, &mut report);
     }
-    Some((model, settings, file.growth, file.output, report.notes))
+    for name in values.unused {
+        report.note(format!("parameters.{name}"), "nothing uses this parameter");
+    }
+    if let Some(units) = &values.units {
+        plausibility::check(&file, units, &mut report);
+    }
+    let (output, notes) = (file.output, report.notes);
+    Some(Built { model, settings, growth: file.growth, output, units: values.units.map(|u| u.names), notes })
 }
 
 /// Name of the file, or of its folder if the file is just called case.toml.
@@ -129,9 +156,13 @@ fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     Elasticity { young: m.young, poisson: m.poisson, plane: m.plane }
 }
 
-fn domain(file: &CaseFile, folder: &Path, report: &mut Report) -> Option<Domain> {
+fn domain(file: &CaseFile, imported: Option<&AbaqusModel>, folder: &Path, report: &mut Report) -> Option<Domain> {
     let mut boundary = Boundary::default();
-    let mut sound = outline::add_outline(&mut boundary, &file.geometry, folder, report).is_some();
+    let added = match imported {
+        Some(model) => mesh::add_domain(&mut boundary, &model.domain, import::KEY, report),
+        None => outline::add_outline(&mut boundary, &file.geometry, folder, report),
+    };
+    let mut sound = added.is_some();
     for (index, hole) in file.hole.iter().enumerate() {
         sound &= outline::add_hole(&mut boundary, hole, index, report).is_some();
     }

@@ -32,6 +32,11 @@ pub(super) fn add_outline(
         }
         Geometry::Outline(o) => outline(boundary, o, "geometry.outline", None, report)?,
         Geometry::Gmsh(file) => return super::mesh::add_mesh(boundary, &folder.join(&file.file), report),
+        // The file was read with all that it says, and its body is added where that is at hand.
+        Geometry::Abaqus(file) => {
+            report.error("geometry.abaqus.file", format!("{} was not read", file.file));
+            return None;
+        }
     };
     boundary.push_loop(edges);
     Some(())

@@ -47,6 +47,7 @@ pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> S
         }
     }
     Settings {
+        method: file.method,
         nodes: nodes(&file.nodes, folder, report),
         approximation: file.approximation,
         integration: file.integration,

@@ -13,7 +13,8 @@ const PLANE_TOLERANCE: f64 = 1e-9;
 /// well above roundoff.
 const AREA_TOLERANCE: f64 = 1e-12;
 
-pub(super) fn build(mesh: &RawMesh) -> Result<GmshModel, GmshError> {
+/// Boundary loops of a mesh.
+pub(in crate::case) fn build(mesh: &RawMesh) -> Result<GmshModel, GmshError> {
     let surface = || mesh.elements.iter().filter(|e| matches!(e.shape, Shape::Triangle | Shape::Quad));
     check_nodes(mesh, surface())?;
     let mut cells = Cells::default();
@@ -28,9 +29,10 @@ pub(super) fn build(mesh: &RawMesh) -> Result<GmshModel, GmshError> {
     }
     let (parts, parts_of_line) = line_parts(mesh);
     let mut loops = cells.loops(mesh, &parts_of_line)?;
-    let vertices = cells.vertices;
+    let (vertices, midside) = (cells.vertices, cells.midside);
     order_loops(&vertices, &mut loops)?;
-    let mut model = GmshModel { vertices, triangles: cells.triangles, quads: cells.quads, parts, boundary: loops };
+    let mut model =
+        GmshModel { vertices, triangles: cells.triangles, quads: cells.quads, parts, boundary: loops, midside };
     drop_unused_parts(&mut model);
     Ok(model)
 }
@@ -56,7 +58,9 @@ struct Cells {
     quads: Vec<[u32; 4]>,
     /// Edges with their cell to the left, in the order of the cells; with the midside node, if there is one.
     edges: Vec<(u32, u32, Option<u64>)>,
-    /// The same by both ends.
+    /// Vertices in the middle of an edge.
+    midside: BTreeSet<u32>,
+    /// The edges by both ends.
     by_ends: HashSet<(u32, u32)>,
 }
 
@@ -125,6 +129,7 @@ impl Cells {
                 let mut from = start;
                 if let Some(tag) = middle {
                     let middle = self.vertex(mesh, tag);
+                    self.midside.insert(middle);
                     edges.push(BoundaryEdge { start: from, end: middle, parts: parts.clone() });
                     from = middle;
                 }

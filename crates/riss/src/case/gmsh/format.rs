@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// What the file says.
 #[derive(Default)]
-pub(super) struct RawMesh {
+pub(in crate::case) struct RawMesh {
     /// Nodes by tag.
     pub nodes: HashMap<u64, RawNode>,
     /// Lines, triangles and quadrilaterals, in the order of the file.
@@ -25,19 +25,19 @@ pub(super) struct RawMesh {
 
 /// What becomes of elements with a volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Solids {
+pub(in crate::case) enum Solids {
     #[default]
     Refused,
     LeftOut,
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct RawNode {
+pub(in crate::case) struct RawNode {
     pub position: [f64; 3],
     pub place: Place,
 }
 
-pub(super) struct RawElement {
+pub(in crate::case) struct RawElement {
     pub shape: Shape,
     /// Corners, then midside nodes (that of corners 0 and 1 first), then the rest.
     pub nodes: Vec<u64>,
@@ -47,7 +47,7 @@ pub(super) struct RawElement {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(in crate::case) enum Shape {
     Point,
     Line,
     Triangle,

@@ -14,6 +14,9 @@ mod surface;
 
 use crate::geometry::surface::TriangleMesh;
 use crate::math::Vector2;
+pub(super) use boundary::build;
+pub(super) use format::{RawElement, RawMesh, RawNode, Shape};
+use std::collections::BTreeSet;
 use std::fmt;
 
 /// A plane mesh: its cells, and its boundary with the names of the physical groups there.
@@ -33,6 +36,8 @@ pub struct GmshModel {
     /// A loop starts at its vertex of least x, then y; holes are sorted by that vertex. An edge of second order comes
     /// as two.
     pub boundary: Vec<Vec<BoundaryEdge>>,
+    /// Vertices in the middle of an edge of second order.
+    pub(in crate::case) midside: BTreeSet<u32>,
 }
 
 /// A straight edge of the boundary.

@@ -66,7 +66,7 @@ pub(in crate::case) struct Support {
     /// Part or parts; outline is every outer edge.
     #[serde(default)]
     pub on: Option<Names>,
-    /// A point of the body.
+    /// A point of the body [length].
     #[serde(default)]
     pub at: Option<Point>,
     /// Displacement along x [length].
@@ -104,9 +104,9 @@ pub(in crate::case) struct Spring {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct PointLoad {
-    /// A point of the body.
+    /// A point of the body [length].
     pub at: Point,
-    /// Force along x and y over the whole thickness.
+    /// Force along x and y over the whole thickness [force].
     pub force: [f64; 2],
 }
 
@@ -152,18 +152,18 @@ pub(in crate::case) enum Exact {
 #[serde(deny_unknown_fields)]
 #[allow(non_snake_case)]
 pub(in crate::case) struct CrackTip {
-    /// The tip.
+    /// The tip [length].
     pub tip: Point,
     /// Direction ahead of the crack, from the x axis [degrees].
     #[serde(default)]
     pub angle_deg: f64,
-    /// Mode I stress intensity factor.
+    /// Mode I stress intensity factor [stress·√length].
     #[serde(default)]
     pub K_I: f64,
-    /// Mode II stress intensity factor.
+    /// Mode II stress intensity factor [stress·√length].
     #[serde(default)]
     pub K_II: f64,
-    /// T-stress.
+    /// T-stress [stress].
     #[serde(default)]
     pub T: f64,
 }
@@ -172,11 +172,11 @@ pub(in crate::case) struct CrackTip {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct PlateWithHole {
-    /// Center of the hole.
+    /// Center of the hole [length].
     pub center: Point,
     /// Radius of the hole [length], positive.
     pub radius: f64,
-    /// Remote stress along x.
+    /// Remote stress along x [stress].
     pub stress: f64,
 }
 
@@ -188,7 +188,7 @@ pub(in crate::case) struct Cantilever {
     pub length: f64,
     /// Height [length], positive.
     pub height: f64,
-    /// Force at the end along -y per thickness.
+    /// Force at the end along -y per thickness [stress·length].
     pub load: f64,
 }
 
@@ -196,7 +196,7 @@ pub(in crate::case) struct Cantilever {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct Linear {
-    /// Displacement at the origin.
+    /// Displacement at the origin [length].
     #[serde(default)]
     pub constant: Point,
     /// Displacement gradient, rows `[[ux,x, ux,y], [uy,x, uy,y]]`.

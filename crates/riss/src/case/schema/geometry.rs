@@ -18,15 +18,18 @@ pub(in crate::case) enum Geometry {
     Outline(Outline),
     /// Boundary of a Gmsh mesh; parts are its physical curves.
     Gmsh(MeshFile),
+    /// Boundary of an input file of Abaqus or CalculiX; parts are its surfaces and sets. Its material, supports and loads
+    /// hold unless the case names its own.
+    Abaqus(MeshFile),
 }
 
 /// An axis-aligned rectangle.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct Rectangle {
-    /// Lower left corner.
+    /// Lower left corner [length].
     pub lower: Point,
-    /// Upper right corner.
+    /// Upper right corner [length].
     pub upper: Point,
 }
 
@@ -34,7 +37,7 @@ pub(in crate::case) struct Rectangle {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct Disk {
-    /// Center.
+    /// Center [length].
     pub center: Point,
     /// Radius [length], positive.
     pub radius: f64,
@@ -44,7 +47,7 @@ pub(in crate::case) struct Disk {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct Polygon {
-    /// Corners in order, at least 3.
+    /// Corners in order, at least 3 [length].
     pub corners: Vec<Point>,
     /// Name of the edge that leaves each corner; edge-1, edge-2, ... if not given.
     #[serde(default)]
@@ -55,7 +58,7 @@ pub(in crate::case) struct Polygon {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct Outline {
-    /// Where the first edge begins.
+    /// Where the first edge begins [length].
     pub start: Point,
     /// Edges in order; a straight one closes the chain if the last does not end at `start`.
     pub edges: Vec<OutlineEdge>,
@@ -65,12 +68,12 @@ pub(in crate::case) struct Outline {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct OutlineEdge {
-    /// End point.
+    /// End point [length].
     pub to: Point,
-    /// A point on the arc between its ends.
+    /// A point on the arc between its ends [length].
     #[serde(default)]
     pub through: Option<Point>,
-    /// Center of the arc; needs `turn`.
+    /// Center of the arc [length]; needs `turn`.
     #[serde(default)]
     pub center: Option<Point>,
     /// Which way the arc turns around `center`.
@@ -109,7 +112,7 @@ pub(in crate::case) struct Hole {
     /// A circle.
     #[serde(default)]
     pub circle: Option<Disk>,
-    /// Corners of a polygon.
+    /// Corners of a polygon [length].
     #[serde(default)]
     pub polygon: Option<Vec<Point>>,
     /// Straight and circular edges.
@@ -125,9 +128,9 @@ pub(in crate::case) struct Part {
     pub name: String,
     /// The part it lies on.
     pub on: String,
-    /// One end, on that part.
+    /// One end, on that part [length].
     pub from: Point,
-    /// The other end, on that part.
+    /// The other end, on that part [length].
     pub to: Point,
 }
 
@@ -138,7 +141,7 @@ pub(in crate::case) struct Crack {
     /// Name in the results; crack-1, crack-2, ... if not given.
     #[serde(default)]
     pub name: Option<String>,
-    /// Points in order, at least 2.
+    /// Points in order, at least 2 [length].
     #[serde(default)]
     pub path: Option<Vec<Point>>,
     /// A circular arc.
@@ -153,11 +156,11 @@ pub(in crate::case) struct Crack {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::case) struct CrackArc {
-    /// One end.
+    /// One end [length].
     pub start: Point,
-    /// A point between the ends.
+    /// A point between the ends [length].
     pub through: Point,
-    /// The other end.
+    /// The other end [length].
     pub end: Point,
     /// Longest segment of the polyline [length]; segments turn by 2 degrees at most in any case.
     #[serde(default)]

@@ -7,7 +7,7 @@ pub(in crate::case) use conditions::*;
 pub(in crate::case) use geometry::*;
 
 use crate::adaptivity::AccuracySettings;
-use crate::analysis::GrowthSettings;
+use crate::analysis::{GrowthSettings, Method};
 use crate::approximation::ApproximationSettings;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
@@ -16,7 +16,8 @@ use crate::model::Contact;
 use crate::nodes::settings::{Graded, Listed, Star, Structured};
 use crate::system::{ConstraintMethod, LinearSolver};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// `[x, y]` [length].
 pub(in crate::case) type Point = [f64; 2];
@@ -29,9 +30,15 @@ pub(in crate::case) struct CaseFile {
     /// Title in the results.
     #[serde(default)]
     pub title: Option<String>,
+    /// Units of length, force and stress, such as "mm, N, MPa"; then numbers may carry units of their own, "200 GPa".
+    #[serde(default, rename = "units")]
+    pub _units: Option<String>,
+    /// Numbers with names, for expressions such as "2*a" wherever a number is due, and for sweeps.
+    #[serde(default, rename = "parameters")]
+    pub _parameters: BTreeMap<String, f64>,
     /// Numerical method.
-    #[serde(default, rename = "method")]
-    pub _method: Method,
+    #[serde(default)]
+    pub method: Method,
     /// Elastic constants.
     pub material: Material,
     /// Outline of the body.
@@ -108,15 +115,6 @@ pub(in crate::case) struct CaseFile {
     pub output: OutputSettings,
 }
 
-/// Numerical method.
-#[derive(Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(in crate::case) enum Method {
-    /// Element-free Galerkin with moving least squares.
-    #[default]
-    ElementFreeGalerkin,
-}
-
 /// Elastic constants.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -171,7 +169,7 @@ pub(in crate::case) struct NodeFile {
 }
 
 /// What is written besides the fracture quantities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputSettings {
     /// Positions, supports and parameters of the nodes.

@@ -63,6 +63,9 @@ pub struct RunSource {
     pub threads: usize,
     /// Begin of the run, in seconds since 1970.
     pub started_unix_s: u64,
+    /// Key and value of every setting, defaults filled in.
+    #[serde(default)]
+    pub settings: Vec<[String; 2]>,
 }
 
 /// Makes the report of a finished or interrupted run again from its folder; returns its path.
@@ -129,6 +132,7 @@ pub(super) fn report(dir: &Path, results: &Results) -> io::Result<String> {
     let mut data = String::new();
     push_data(&mut data, "results", &serde_json::to_string(results)?);
     push_data(&mut data, "run", &run.to_string());
+    push_data(&mut data, "units", &serde_json::to_string(&results.units)?);
     data.push_str(&fields);
     Ok(fill(PAGE, |mark| match mark {
         "title" => html(&results.case),

@@ -5,7 +5,7 @@ const CHART_HEIGHT = 260;
 
 /** What can stand on the horizontal axis, where it is known. */
 const AXES = [
-  { name: "a", title: "crack length a", of: (point) => point.a },
+  { name: "a", title: withUnit("crack length a", "length"), of: (point) => point.a },
   { name: "cycles", title: "load cycles N", of: (point) => point.step.cycles },
   { name: "step", title: "step", of: (point) => point.step.step },
 ];
@@ -13,13 +13,13 @@ const AXES = [
 /** What can stand on the vertical axis of the chart that the reader chooses. */
 const CHOICES = [
   { title: "load factor", of: (point) => point.step.load_factor, when: (p) => p.step.load_factor !== null && p.step.load_factor !== 1 },
-  { title: "growth per cycle", of: (point) => point.tip.growth_rate },
-  { title: "equivalent K", of: (point) => point.tip.K_equivalent, spread: (point) => point.tip.K_uncertainty },
-  { title: "J-integral", of: (point) => point.tip.J },
-  { title: "T-stress", of: (point) => point.tip.T },
+  { title: withUnit("growth per cycle", "rate"), of: (point) => point.tip.growth_rate },
+  { title: withUnit("equivalent K", "factor"), of: (point) => point.tip.K_equivalent, spread: (point) => point.tip.K_uncertainty },
+  { title: withUnit("J-integral", "force per length"), of: (point) => point.tip.J },
+  { title: withUnit("T-stress", "stress"), of: (point) => point.tip.T },
   { title: "kink angle in degrees", of: (point) => point.tip.kink_angle_deg },
-  { title: "increment", of: (point) => point.tip.increment },
-  { title: "strain energy", of: (point) => point.step.strain_energy, once: true },
+  { title: withUnit("increment", "length"), of: (point) => point.tip.increment },
+  { title: withUnit("strain energy", "energy"), of: (point) => point.step.strain_energy, once: true },
 ];
 
 const pathLength = (path) => path.slice(1).reduce((sum, p, k) => sum + Math.hypot(p[0] - path[k][0], p[1] - path[k][1]), 0);
@@ -71,7 +71,7 @@ class Curves {
       { title: "K_I", of: (p) => p.tip.K_I, spread: (p) => p.tip.K_uncertainty },
       { title: "K_II", of: (p) => p.tip.K_II, spread: (p) => p.tip.K_uncertainty, dash: [6, 4] },
     ];
-    const length = { title: "crack length a", of: (p) => p.a };
+    const length = { title: withUnit("crack length a", "length"), of: (p) => p.a };
     const time = this.axes.find((a) => a.name === "cycles") ?? this.axes.find((a) => a.name === "step");
     const growth = this.results.steps.some((s) => s.cycles !== null || s.load_factor !== 1) || this.axes.length > 1;
     this.charts = [
@@ -103,7 +103,7 @@ class Curves {
       cursor: { drag: { x: true, y: false } },
       axes: [
         { ...this.axisStyle(axis.title), size: 34 },
-        { ...this.axisStyle(quantities.length > 1 ? "K" : quantities[0].title), size: this.axisSize },
+        { ...this.axisStyle(quantities.length > 1 ? withUnit("K", "factor") : quantities[0].title), size: this.axisSize },
       ],
       series: [
         { label: axis.title, value: (_, v) => number(v) },

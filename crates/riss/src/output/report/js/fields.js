@@ -2,15 +2,15 @@
 
 /** What the colors can show; `signed` quantities have white at zero. */
 const QUANTITIES = [
-  { name: "von_mises", title: "von Mises stress" },
-  { name: "max_principal_stress", title: "max. principal stress" },
-  { name: "min_principal_stress", title: "min. principal stress", signed: true },
-  { name: "stress_xx", title: "stress xx", signed: true },
-  { name: "stress_yy", title: "stress yy", signed: true },
-  { name: "stress_xy", title: "stress xy", signed: true },
-  { name: "displacement", title: "displacement" },
-  { name: "displacement_x", title: "displacement x", signed: true },
-  { name: "displacement_y", title: "displacement y", signed: true },
+  { name: "von_mises", title: withUnit("von Mises stress", "stress") },
+  { name: "max_principal_stress", title: withUnit("max. principal stress", "stress") },
+  { name: "min_principal_stress", title: withUnit("min. principal stress", "stress"), signed: true },
+  { name: "stress_xx", title: withUnit("stress xx", "stress"), signed: true },
+  { name: "stress_yy", title: withUnit("stress yy", "stress"), signed: true },
+  { name: "stress_xy", title: withUnit("stress xy", "stress"), signed: true },
+  { name: "displacement", title: withUnit("displacement", "length") },
+  { name: "displacement_x", title: withUnit("displacement x", "length"), signed: true },
+  { name: "displacement_y", title: withUnit("displacement y", "length"), signed: true },
   { name: "error_indicator", title: "error indicator" },
 ];
 

@@ -1,4 +1,4 @@
-// Numbers and elements: `number`, `short`, `element`, `byId`, `replaceChildren`.
+// Numbers and elements: `number`, `short`, `element`, `byId`, `readJson`, `withUnit`.
 
 /** Six significant digits; a dash for what is not known. */
 function number(value, digits = 6) {
@@ -28,3 +28,15 @@ function element(tag, attributes = {}, ...children) {
 const themeColor = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 const readJson = (id) => JSON.parse(byId(id).textContent);
+
+/** Units of the case by what they measure; none where the case does not say them. */
+const UNITS = ((names) => names && {
+  ...names,
+  factor: `${names.stress}√${names.length}`,
+  "force per length": `${names.force}/${names.length}`,
+  energy: `${names.force}·${names.length}`,
+  rate: `${names.length}/cycle`,
+})(readJson("units"));
+
+/** A title with its unit in brackets. */
+const withUnit = (title, kind) => (UNITS && kind ? `${title} [${UNITS[kind]}]` : title);

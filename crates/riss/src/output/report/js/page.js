@@ -32,7 +32,8 @@ function showAbout() {
     ["nodes", results.nodes],
     ["unknowns", results.unknowns],
     ["integration points", results.integration_points],
-    ["strain energy", last && results.strain_energy !== null && number(results.strain_energy)],
+    ["units", results.units && `${results.units.length}, ${results.units.force}, ${results.units.stress}`],
+    [withUnit("strain energy", "energy"), last && results.strain_energy !== null && number(results.strain_energy)],
     ["energy error", results.energy_error !== null && `${number(100 * results.energy_error, 4)} %`],
     ["residual", results.residual !== null && number(results.residual, 3)],
   ];
@@ -75,9 +76,9 @@ function showProbe() {
   const entries = [];
   if (found?.tip) {
     const { crack, tip } = found.tip;
-    entries.push(entry("tip", `${crack.name} ${tip.end}`, "tip", true), entry("K_I", tip.K_I, "K_I"), entry("K_II", tip.K_II, "K_II"), entry("±", tip.K_uncertainty, "K_uncertainty"));
+    entries.push(entry("tip", `${crack.name} ${tip.end}`, "tip", true), entry(withUnit("K_I", "factor"), tip.K_I, "K_I"), entry(withUnit("K_II", "factor"), tip.K_II, "K_II"), entry("±", tip.K_uncertainty, "K_uncertainty"));
   } else if (found) {
-    entries.push(entry("x", found.x, "x"), entry("y", found.y, "y"));
+    entries.push(entry(withUnit("x", "length"), found.x, "x"), entry(withUnit("y", "length"), found.y, "y"));
     const others = QUANTITIES.filter((q) => q !== map.quantity);
     entries.push(...[map.quantity, ...others].map((q) => entry(q.title, found.value(q.name), q.name, q === map.quantity)));
   }
@@ -168,9 +169,10 @@ function start() {
   showSummary();
   showAbout();
   stageTable(results);
+  settingsTable(run.source);
   historyTable(results, null);
   attachControls();
-  for (const [id, name] of [["tips", "crack tips"], ["history", "all steps"]]) addCopyButton(byId(id), name);
+  for (const [id, name] of [["tips", "crack tips"], ["history", "all steps"], ["settings-table", "settings"]]) addCopyButton(byId(id), name);
   attachPointer(map, (...at) => {
     pointer = at.length ? at : null;
     if (map.cross && pointer) { map.cross = false; map.draw(); }

@@ -1,4 +1,5 @@
-// Tables with a button to copy them: `fillTable`, `tipTable`, `reactionTable`, `historyTable`, `stageTable`.
+// Tables with a button to copy them: `fillTable`, `tipTable`, `reactionTable`, `historyTable`, `stageTable`,
+// `settingsTable`.
 
 const column = (title, of, kind) => ({ title, of, kind });
 
@@ -43,21 +44,21 @@ function addCopyButton(table, name) {
 const TIP_COLUMNS = [
   column("crack", (r) => r.crack.name, "text"),
   column("end", (r) => r.tip.end, "text"),
-  column("x", (r) => r.tip.position[0]),
-  column("y", (r) => r.tip.position[1]),
-  column("a", (r) => pathLength(r.crack.path)),
-  column("K_I", (r) => r.tip.K_I),
-  column("K_II", (r) => r.tip.K_II),
-  column("± K", (r) => r.tip.K_uncertainty, "error"),
-  column("J", (r) => r.tip.J),
-  column("T", (r) => r.tip.T),
+  column(withUnit("x", "length"), (r) => r.tip.position[0]),
+  column(withUnit("y", "length"), (r) => r.tip.position[1]),
+  column(withUnit("a", "length"), (r) => pathLength(r.crack.path)),
+  column(withUnit("K_I", "factor"), (r) => r.tip.K_I),
+  column(withUnit("K_II", "factor"), (r) => r.tip.K_II),
+  column(withUnit("± K", "factor"), (r) => r.tip.K_uncertainty, "error"),
+  column(withUnit("J", "force per length"), (r) => r.tip.J),
+  column(withUnit("T", "stress"), (r) => r.tip.T),
   column("status", (r) => r.tip.status, "text"),
 ];
 const GROWTH_COLUMNS = [
-  column("K equivalent", (r) => r.tip.K_equivalent),
+  column(withUnit("K equivalent", "factor"), (r) => r.tip.K_equivalent),
   column("kink °", (r) => r.tip.kink_angle_deg),
-  column("increment", (r) => r.tip.increment),
-  column("da/dN", (r) => r.tip.growth_rate),
+  column(withUnit("increment", "length"), (r) => r.tip.increment),
+  column(withUnit("da/dN", "rate"), (r) => r.tip.growth_rate),
 ];
 const REASON = column("reason", (r) => r.tip.reason, "text long");
 const STEP_COLUMNS = [
@@ -88,7 +89,7 @@ function tipTable(step, histories) {
 function reactionTable(step) {
   const rows = Object.entries(step.reactions);
   const component = (k) => (r) => r[1]?.[k] ?? null;
-  fillTable(byId("reactions"), [column("reaction of", (r) => r[0], "text"), column("x", component(0)), column("y", component(1))], rows);
+  fillTable(byId("reactions"), [column("reaction of", (r) => r[0], "text"), column(withUnit("x", "force"), component(0)), column(withUnit("y", "force"), component(1))], rows);
   byId("reactions").parentElement.hidden = rows.length === 0;
 }
 
@@ -115,4 +116,10 @@ function stageTable(results) {
     bar.style.width = `${(100 * rows[k][1]) / longest}%`;
     cell.append(bar);
   });
+}
+
+function settingsTable(source) {
+  const rows = source?.settings ?? [];
+  byId("settings").hidden = rows.length === 0;
+  fillTable(byId("settings-table"), [column("key", (r) => r[0], "text"), column("value", (r) => r[1], "text")], rows);
 }

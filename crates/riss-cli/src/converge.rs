@@ -1,0 +1,122 @@
+//! `riss converge`.
+
+use crate::claim::Claim;
+use crate::progress::Progress;
+use crate::table::{aligned, number};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
+use clap::Args;
+use riss::analysis::{ConvergenceStudy, Limit, converge};
+use riss::case::Case;
+use riss::crack::End;
+use riss::output::write_convergence;
+use std::path::PathBuf;
+
+/// Arguments of `riss converge`.
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  riss converge plate.toml\n  riss converge plate.toml --factors 2,1,0.5,0.25 --out study"
+)]
+pub struct ConvergeArguments {
+    /// Case file; its cracks do not grow
+    pub case: PathBuf,
+    /// Node spacings of the solutions over that of the case, at least three
+    #[arg(long, value_name = "F,...", value_delimiter = ',', value_parser = factor, default_value = "2,1.4,1,0.7,0.5")]
+    pub factors: Vec<f64>,
+    /// Folder for the table and the picture [default: NAME.riss-out in the current folder]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Overrides a key of the case, such as material.young=70e9; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<String>,
+    /// Shows no progress and no notes
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.05..=20.0).contains(&value) => Ok(value),
+        _ => Err("it must be a number from 0.05 to 20".into()),
+    }
+}
+
+/// Solves on nodes of several spacings and says where K goes; returns the exit code.
+pub fn run(arguments: &ConvergeArguments) -> u8 {
+    let mut factors = arguments.factors.clone();
+    factors.sort_by(f64::total_cmp);
+    factors.dedup();
+    if factors.len() < 3 {
+        eprintln!("error: a limit needs at least three different factors, {} given", factors.len());
+        return BAD_CASE;
+    }
+    let case = match Case::read(&arguments.case, &arguments.overrides) {
+        Ok(case) => case,
+        Err(errors) => {
+            diagnostics::report_errors(&errors);
+            return BAD_CASE;
+        }
+    };
+    let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
+    let _claim = match Claim::of(&dir) {
+        Ok(claim) => claim,
+        Err(e) => {
+            eprintln!("error: cannot write to {}: {}", dir.display(), results::reason(&e));
+            return STOPPED;
+        }
+    };
+    let mut progress = Progress::new(arguments.quiet);
+    let study = converge(&case.model, &case.settings, &factors, &mut progress);
+    progress.finish();
+    match study.map(|study| (summary(&study), write_convergence(&dir, &study))) {
+        Ok((text, Ok(paths))) => {
+            let lines: String = paths.iter().map(|p| format!("wrote {}\n", p.display())).collect();
+            crate::print(&format!("{}\n\n{text}\n{lines}", case.model.title));
+            DONE
+        }
+        Ok((_, Err(e))) => {
+            eprintln!("error: cannot write to {}: {}", dir.display(), results::reason(&e));
+            STOPPED
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            STOPPED
+        }
+    }
+}
+
+/// Tips one after the other: each solution, the limit, the order.
+fn summary(study: &ConvergenceStudy) -> String {
+    let n_tips = study.levels.first().map_or(0, |l| l.tips.len());
+    let mut rows = vec![];
+    for k in 0..n_tips {
+        for level in &study.levels {
+            let tip = &level.tips[k];
+            let numbers = [tip.factors[0], tip.factors[1], tip.uncertainty].map(number);
+            rows.push(row(&tip.crack, tip.end, &level.n_nodes.to_string(), numbers));
+        }
+        if let [Some(k1), Some(k2)] = study.limits[k] {
+            let tip = &study.levels[0].tips[k];
+            let numbers = [k1.value, k2.value, k1.uncertainty.max(k2.uncertainty)].map(number);
+            rows.push(row(&tip.crack, tip.end, "limit", numbers));
+            rows.push(row(&tip.crack, tip.end, "order", [order(&k1), order(&k2), String::new()]));
+        }
+    }
+    if rows.is_empty() {
+        let row = |l: &riss::analysis::convergence::Level| vec![l.n_nodes.to_string(), number(l.strain_energy)];
+        return aligned(&["nodes", "strain energy"], &study.levels.iter().map(row).collect::<Vec<_>>(), &[]);
+    }
+    aligned(&["crack", "end", "nodes", "K_I", "K_II", "K_uncertainty"], &rows, &[0, 1])
+}
+
+/// Order of convergence; a value that hardly changes has none that can be told.
+fn order(limit: &Limit) -> String {
+    if limit.uncertainty > 1e-12 * limit.value.abs() { format!("{:.2}", limit.order) } else { "-".into() }
+}
+
+fn row(crack: &str, end: End, nodes: &str, numbers: [String; 3]) -> Vec<String> {
+    let end = match end {
+        End::Start => "start",
+        End::End => "end",
+    };
+    [crack, end, nodes].map(String::from).into_iter().chain(numbers).collect()
+}

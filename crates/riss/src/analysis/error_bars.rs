@@ -1,0 +1,57 @@
+//! Error bars of stress intensity factors.
+//!
+//! A bar is the sum of two parts, and no less than the third:
+//! - the spread over the integration domains;
+//! - what the discretization leaves out: the error of `K = a(u, d)` with the extraction field `d` is
+//!   `a(u - u_h, d - d_h)`, at most the product of two errors in the energy norm [BeckerRannacher2001]. Near a tip both
+//!   fields go with `√r`, so their errors are alike, and the bound in a disk of radius `R` is a multiple of
+//!   `λ = ‖e‖² E' / (K² R)`, with the error estimate `‖e‖`;
+//! - the difference between `√(E' J)` and the factors.
+//!
+//! The multiple is calibrated by bodies with known factors (`cargo xtask calibrate`). It grows with `λ`, as recovery sees
+//! less of the error on coarse nodes.
+
+use super::record::{CrackRecord, TipRecord};
+use crate::adaptivity::estimate_error_within;
+use crate::error::Result;
+use crate::math::Vector2;
+use crate::model::Model;
+use crate::system::{Discretization, Solution};
+
+/// Part of `λ` that is in a bar on fine nodes.
+const SHARE: f64 = 0.25;
+/// How fast that part grows with `λ`.
+const SHARE_GROWTH: f64 = 20.0;
+
+/// Widens the bars of all tips, which hold the spread over the domains before.
+///
+/// # Errors
+/// Those of the shape functions.
+pub(super) fn widen_error_bars(
+    model: &Model,
+    discrete: &Discretization,
+    solution: &Solution,
+    cracks: &mut [CrackRecord],
+) -> Result<()> {
+    let mut tips: Vec<&mut TipRecord> =
+        cracks.iter_mut().flat_map(|c| &mut c.tips).filter(|t| t.k1.is_some() && !t.radii.is_empty()).collect();
+    let disk = |tip: &&mut TipRecord| (tip.position, tip.radii.iter().copied().fold(0.0, f64::max));
+    let disks: Vec<(Vector2, f64)> = tips.iter().map(disk).collect();
+    let errors = estimate_error_within(model, discrete, solution, &disks)?;
+    let young = model.material.effective_young();
+    for ((tip, error), (_, radius)) in tips.iter_mut().zip(errors).zip(disks) {
+        let (Some(k1), Some(k2), Some(spread)) = (tip.k1, tip.k2, tip.k_uncertainty) else { continue };
+        let size = k1.hypot(k2);
+        let part = size * numerical_part(error * young / (size * size * radius));
+        let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
+        // A tip without load has no part.
+        let part = if part.is_finite() { part } else { 0.0 };
+        tip.k_uncertainty = Some((spread + part).max(second));
+    }
+    Ok(())
+}
+
+/// What the discretization leaves out, over the size of the factors, for a given `λ`.
+fn numerical_part(lambda: f64) -> f64 {
+    SHARE * lambda * (1.0 + SHARE_GROWTH * lambda)
+}
