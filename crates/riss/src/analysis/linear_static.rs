@@ -1,5 +1,6 @@
 //! One linear elastic solution and everything that is read from it.
 
+use super::guard_rails::Rails;
 use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
 use super::error_bars::widen_error_bars;
@@ -34,7 +35,8 @@ const TIP_STEP: f64 = 1e-5;
 /// # Errors
 /// Every variant of [`Error`]; tips without room for a domain are reported, not refused.
 pub fn linear_static(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<StaticResult> {
-    let result = solve_step(model, settings, 0, observer)?;
+    let mut result = solve_step(model, settings, 0, observer)?;
+    Rails { said: &mut vec![], observer }.inspect(model, &mut result);
     // There is nothing left to break off.
     let _ = observer.step(&result, None);
     Ok(result)

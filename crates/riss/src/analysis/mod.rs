@@ -6,6 +6,7 @@ pub mod crack_growth;
 pub mod energy;
 mod error_bars;
 pub mod fields;
+mod guard_rails;
 pub mod linear_static;
 pub mod method;
 pub mod node_function;

@@ -65,8 +65,17 @@ impl Observer for Silent {}
 /// A result that stands, but deserves a second look.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
+    /// Key of the case that it is about, such as `crack[0]`.
+    pub key: Option<String>,
     /// What happened, with numbers, and what to do.
     pub message: String,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.key.iter().try_for_each(|key| write!(f, "{key}: "))?;
+        f.write_str(&self.message)
+    }
 }
 
 /// Tells the observer of warnings and keeps them.
@@ -81,7 +90,7 @@ impl<'a> Warnings<'a> {
     }
 
     pub fn add(&mut self, message: String) {
-        let warning = Warning { message };
+        let warning = Warning { key: None, message };
         self.observer.warning(&warning);
         self.list.push(warning);
     }

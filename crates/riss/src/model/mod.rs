@@ -38,7 +38,11 @@ pub struct Model {
     pub material: Elasticity,
     /// Thickness [length]; stress intensity factors do not depend on it.
     pub thickness: f64,
-    /// Cracks; they may touch the boundary, but not yet one another.
+    /// Whether the thickness is that of the part, not a unit of it.
+    pub thickness_is_given: bool,
+    /// Yield stress, to judge whether the body is linear elastic [stress].
+    pub yield_stress: Option<f64>,
+    /// Cracks; they may touch the boundary and one another.
     pub cracks: Vec<CrackPath>,
     /// Tractions on boundary parts.
     pub loads: Vec<BoundaryLoad>,
@@ -71,6 +75,8 @@ impl Model {
             domain,
             material,
             thickness: 1.0,
+            thickness_is_given: false,
+            yield_stress: None,
             cracks: vec![],
             loads: vec![],
             crack_face_loads: vec![],

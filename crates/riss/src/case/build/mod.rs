@@ -86,6 +86,8 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     let model = Model {
         title: file.title.clone().unwrap_or_else(|| default_title(path)),
         thickness: file.material.thickness.unwrap_or(1.0),
+        thickness_is_given: file.material.thickness.is_some(),
+        yield_stress: file.material.yield_stress,
         rigid_motion: match file.rigid_motion {
             schema::RigidMotion::Supported => RigidMotion::Supported,
             schema::RigidMotion::MeanIsZero => RigidMotion::MeanIsZero,
@@ -152,6 +154,9 @@ fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     }
     if let Some(thickness) = m.thickness {
         report.positive("material.thickness", thickness);
+    }
+    if let Some(yield_stress) = m.yield_stress {
+        report.positive("material.yield_stress", yield_stress);
     }
     Elasticity { young: m.young, poisson: m.poisson, plane: m.plane }
 }
