@@ -175,9 +175,7 @@ impl<'a> Checker<'a> {
             self.report(key, node, "a table, not a name".into()).suggest(format!("write [{key}.{text}]"));
             return;
         }
-        let planned = key == "method" && text == "collocation";
-        let message = if planned { "this method is not available yet" } else { "unknown name" };
-        self.report(key, node, message.into()).one_of(text, names.into_iter().chain(tables));
+        self.report(key, node, "unknown name".into()).one_of(text, names.into_iter().chain(tables));
     }
 
     fn number(&mut self, node: &Node, value: f64, schema: &'a Value, key: &str) {
