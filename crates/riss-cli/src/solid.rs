@@ -50,8 +50,7 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
     match written {
         Ok(files) => {
             if !arguments.json {
-                let lines: String = files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
-                crate::print(&format!("\n{lines}"));
+                crate::print(&format!("\n{}", results::listed(&files)));
             }
             DONE
         }

@@ -175,7 +175,9 @@ impl<'a> Checker<'a> {
             self.report(key, node, "a table, not a name".into()).suggest(format!("write [{key}.{text}]"));
             return;
         }
-        self.report(key, node, "unknown name".into()).one_of(text, names.into_iter().chain(tables));
+        let is_solid = key == "method" && text == "collocation";
+        let message = if is_solid { "only `riss run` and `riss check` take solids" } else { "unknown name" };
+        self.report(key, node, message.into()).one_of(text, names.into_iter().chain(tables));
     }
 
     fn number(&mut self, node: &Node, value: f64, schema: &'a Value, key: &str) {
