@@ -26,7 +26,7 @@ fn main() -> Result<(), Failure> {
     let (a, b, n) = (10.0, 4.0, argument(0, 40.0));
     let material = Elasticity { young: 200e3, poisson: argument(4, 0.3), plane: PlaneState::Strain };
     let (ahead, normal) = (axis::<3>(0), axis::<3>(2));
-    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors: [1.0, 0.0, 0.0] };
+    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors: [1.0, 0.0, 0.0], t_stress: 0.0 };
     let exact = move |at: &SurfacePoint<3>| field.evaluate(&material, at.position, at.sight).0;
     let mut parts = vec![SurfaceConditions::displacement(VectorField::Function(Arc::new(exact))); 6];
     parts[2] = SurfaceConditions::symmetry();

@@ -116,6 +116,12 @@ pub struct FrontPointResults {
     /// Largest deviation of a factor over the discs that it was computed on [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
+    /// Stress along `ahead` that does not fade at the front [stress].
+    #[serde(rename = "T")]
+    pub t_stress: Option<f64>,
+    /// Largest deviation of the T-stress over the discs [stress].
+    #[serde(rename = "T_uncertainty")]
+    pub t_uncertainty: Option<f64>,
     /// J-integral [stress·length].
     #[serde(rename = "J")]
     pub j: Option<f64>,
@@ -197,6 +203,8 @@ fn point(record: &FrontPointRecord) -> FrontPointResults {
         k2: of(1),
         k3: of(2),
         k_uncertainty: factors.and_then(|f| finite(f.uncertainty)),
+        t_stress: factors.and_then(|f| finite(f.t_stress)),
+        t_uncertainty: factors.and_then(|f| finite(f.t_uncertainty)),
         j: factors.and_then(|f| finite(f.j)),
         disc_radius: record.radius.and_then(finite),
     }

@@ -9,14 +9,18 @@ use super::collocation_settings::CollocationSettings;
 use super::node_conditions::{NodeConditions, Strong, StrongTerm};
 use crate::approximation::visible_nodes::ball_radius;
 use crate::approximation::{ConstrainedMls, EnrichedFront, FitBuffer, ShapeFunctions};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Opaque;
+use crate::material::PlaneState;
 use crate::math::{Matrix, Vector};
 use crate::model::Solid;
 use crate::nodes::cloud::{Cloud, Place};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Largest Poisson's ratio: above it the preconditioner was seen to fail, and errors of the strong form grow.
+pub const LARGEST_POISSON: f64 = 0.45;
 
 /// A solid with nodes, ready to be assembled.
 pub struct Collocation<const D: usize> {
@@ -80,8 +84,13 @@ impl<const D: usize> Collocation<D> {
     /// Writes the equations of all nodes.
     ///
     /// # Errors
-    /// [`crate::Error::PoorStencil`] with the first node whose neighbors do not determine its derivatives.
+    /// [`Error::PoorStencil`] with the first node whose neighbors do not determine its derivatives, and
+    /// [`Error::NearlyIncompressible`] above [`LARGEST_POISSON`] except in plane stress.
     pub fn assemble(&self) -> Result<CollocationSystem<D>> {
+        let material = &self.solid.material;
+        if material.plane == PlaneState::Strain && !(material.poisson <= LARGEST_POISSON) {
+            return Err(Error::NearlyIncompressible { poisson: material.poisson, allowed: LARGEST_POISSON });
+        }
         let n = self.cloud().len();
         let expected = self.approximation.support_size();
         let parts: Vec<Result<Part<D>>> = (0..n.div_ceil(CHUNK))

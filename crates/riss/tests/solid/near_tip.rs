@@ -81,7 +81,7 @@ fn cuboid(n: usize) -> Box<3> {
 
 fn check_cuboid(n: usize, factors: [f64; 3], allowed: f64) {
     let (ahead, normal) = (axis(0), axis(2));
-    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors };
+    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors, t_stress: 0.0 };
     let exact = move |at: &SurfacePoint<3>| field.evaluate(&material(), at.position, at.sight).0;
     let mut solid = solid(VectorField::Function(Arc::new(exact)));
     if factors[2] == 0.0 {
