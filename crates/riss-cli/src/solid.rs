@@ -73,13 +73,15 @@ fn summary(case: &SolidCase, result: &SolidResult, wall_time_s: f64) -> String {
 fn front_table(crack: &str, front: &FrontRecord) -> String {
     let ends = if front.is_closed { "closed" } else { "open" };
     let mut text = format!("\ncrack {crack}, front of length {}, {ends}\n", number(front.length));
-    text += &format!("{:>12}{:>14}{:>14}{:>14}{:>14}{:>14}\n", "s", "K_I", "K_II", "K_III", "+-", "J");
+    text += &format!("{:>12}", "s");
+    ["K_I", "K_II", "K_III", "+-", "T", "J"].iter().for_each(|head| text += &format!("{head:>14}"));
+    text.push('\n');
     for p in &front.points {
         let cell = |v: f64| format!("{:>14}", number(v));
         text += &format!("{:>12}", number(p.point.s));
         match &p.factors {
             Some(f) => {
-                f.factors.iter().chain([&f.uncertainty, &f.j]).for_each(|v| text += &cell(*v));
+                f.factors.iter().chain([&f.uncertainty, &f.t_stress, &f.j]).for_each(|v| text += &cell(*v));
                 text.push('\n');
             }
             None => text += "   no disc fits here: the spacing is too large\n",

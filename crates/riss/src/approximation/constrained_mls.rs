@@ -32,7 +32,7 @@ const DEPENDENT_FRONT: f64 = 1e-6;
 const CORE: f64 = 1e-6;
 /// Reach of the functions of a front over the spacing of nodes there: from here on the error of the polynomials
 /// outside no longer counts. At 4 the factors are off by 2 %, at 6 by 0.1 to 0.8 %, at 8 by 0.04 %.
-const REACH: f64 = 8.0;
+pub const REACH: f64 = 8.0;
 
 /// Constrained moving least squares over a cloud.
 #[derive(Clone)]

@@ -24,12 +24,12 @@ const PLATEAU: f64 = 0.5;
 /// Gauss points along the radius in the plateau and in the slope, and around each half of the disc.
 const RADIAL: usize = 8;
 const ANGULAR: usize = 20;
-/// Gauss points along each face.
-const FACE: usize = 16;
+/// Gauss points along each face, where `q` is one and where it falls.
+const FACE: usize = 10;
 /// Points on faces look from this far off, over the radius.
 const OFF: f64 = 1e-6;
 /// The strain along the front is taken this far ahead of it, over the radius: what changes with √r there no longer counts.
-const BESIDE: f64 = 1e-4;
+const BESIDE: f64 = 1e-5;
 
 /// Fracture quantities at a point of a front from one disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl FrontFactors {
 /// `ahead` × `normal`.
 ///
 /// `T = E' (I + ν ε_33) + σ_22` with the interaction `I` with the unit force, the strain along the front and the stress
-/// that tractions on the faces leave across the crack [Nakamura1992, Eq. 15].
+/// that tractions on the faces leave across the crack [Nakamura1992].
 ///
 /// # Errors
 /// Those of the shape functions.
@@ -259,10 +259,7 @@ impl<const D: usize> Disc<'_, D> {
         let solid = &self.collocation.solid;
         for side in [1.0, -1.0] {
             let normal = self.frame.normal * -side;
-            for (x, weight) in gauss_legendre(FACE) {
-                // r = s² takes the root out of the auxiliary fields.
-                let s = x * radius.sqrt();
-                let (r, weight) = (s * s, 2.0 * weight * s * radius.sqrt());
+            for (r, weight) in face_points(radius) {
                 let q = ((radius - r) / ((1.0 - PLATEAU) * radius)).min(1.0);
                 let position = self.frame.position - self.frame.ahead * r;
                 let sight = position - normal * (OFF * radius);
@@ -319,6 +316,19 @@ fn slope_points(from: f64, to: f64) -> Vec<DiscPoint> {
 /// Gauss points where `q` is one, up to a radius; `r = s²` takes roots out of the integrands.
 fn plateau_points(to: f64) -> Vec<DiscPoint> {
     around(gauss_legendre(RADIAL).into_iter().map(|(x, w)| (to * x * x, 2.0 * to * x * w)))
+}
+
+/// Gauss points along a face up to a radius.
+fn face_points(radius: f64) -> impl Iterator<Item = (f64, f64)> {
+    let ends = [0.0, (PLATEAU * radius).sqrt(), radius.sqrt()];
+    [0, 1].into_iter().flat_map(move |part| {
+        let (from, length) = (ends[part], ends[part + 1] - ends[part]);
+        gauss_legendre(FACE).into_iter().map(move |(x, weight)| {
+            // r = s² takes the root out of the auxiliary fields.
+            let s = from + x * length;
+            (s * s, 2.0 * weight * s * length)
+        })
+    })
 }
 
 /// Points at radii with their weights, in both halves of the disc.

@@ -7,6 +7,7 @@ use crate::analysis::{FrontPointRecord, SolidResult};
 use crate::model::SolidModel;
 use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -129,9 +130,12 @@ pub struct FrontPointResults {
     pub disc_radius: Option<f64>,
 }
 
-/// The JSON Schema of `results.json` of a solid.
-pub fn solid_results_schema() -> serde_json::Value {
-    schemars::schema_for!(SolidResults).to_value()
+/// JSON schema of `results.json` of a solid.
+pub fn solid_results_schema() -> String {
+    let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+    let mut schema = generator.into_root_schema_for::<SolidResults>();
+    schema.insert("title".into(), "results.json of riss for solids".into());
+    serde_json::to_string_pretty(&schema).expect("a schema is plain values") + "\n"
 }
 
 impl SolidResults {

@@ -137,6 +137,8 @@ impl<const D: usize> Collocation<D> {
         entries.push((node, to_block(&conditions.fixed)));
         let mut load = conditions.displacement;
         let young = self.solid.material.young;
+        // All terms of a row have one scale, or their weights would not be those of their angles.
+        let mut spacing = None;
         for term in &conditions.terms {
             let radius = match term.equation {
                 Strong::Fit => self.approximation.at_front(node, term.sight, buffer, shape)?,
@@ -144,7 +146,7 @@ impl<const D: usize> Collocation<D> {
                     self.approximation.at_node(node, term.sight, buffer, shape)?
                 }
             };
-            let h = radius / ball_radius::<D>(shape.neighbors.len());
+            let h = *spacing.get_or_insert(radius / ball_radius::<D>(shape.neighbors.len()));
             let scale = match term.equation {
                 Strong::Equilibrium => h * h / young,
                 Strong::Traction { .. } => h / young,
