@@ -4,11 +4,13 @@ use crate::claim::Claim;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::number;
-use crate::{DONE, STOPPED, diagnostics, results};
+use crate::{DONE, STOPPED, desktop, diagnostics, results};
 use riss::analysis::{FrontRecord, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
 use riss::output::whole_file::write_whole;
-use riss::output::{RunInfo, RunStatus, SolidResults, solid_picture, write_solid_cloud, write_solid_results};
+use riss::output::{
+    REPORT_FILE, RunInfo, RunStatus, SolidResults, solid_picture, write_solid_cloud, write_solid_results,
+};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -52,6 +54,9 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
             if !arguments.json {
                 let lines: String = files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
                 crate::print(&format!("\n{lines}"));
+            }
+            if arguments.open {
+                desktop::open(&dir.join(REPORT_FILE));
             }
             DONE
         }

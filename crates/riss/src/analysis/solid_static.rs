@@ -20,6 +20,9 @@ const DISCS: [f64; 3] = [0.5, 0.75, 1.0];
 /// Largest disc over the spacing at the front, and the smallest that is of use.
 const LARGEST_DISC: f64 = 8.0;
 const SMALLEST_DISC: f64 = 2.0;
+/// Reach of the functions of a front over its least radius of curvature, and the least share of what is asked for.
+const BEND: f64 = 0.6;
+const LEAST_REACH: f64 = 2.0 / 3.0;
 /// Directions in which a disc is probed.
 const PROBES: usize = 24;
 /// Share of a turn on each side of the crack that is not probed.
@@ -128,7 +131,10 @@ fn enriched(front: &CrackFront, settings: &SolidSettings) -> EnrichedFront<3> {
     let ends = if front.is_closed { FrontEnds::Closed } else { FrontEnds::Open };
     let least = front.points.iter().map(|p| settings.spacing.at(p.position)).fold(f64::INFINITY, f64::min);
     let line = FrontLine::new(front.points.iter().map(frame).collect(), ends);
-    EnrichedFront { line, reach: settings.collocation.front_reach * least }
+    let wanted = settings.collocation.front_reach * least;
+    // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
+    let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    EnrichedFront { line, reach: wanted.min((BEND / bend).max(LEAST_REACH * wanted)) }
 }
 
 fn frame(p: &FrontPoint) -> FrontFrame<3> {

@@ -35,7 +35,8 @@ impl CrackFrontField {
     /// The plane state of the material must be that of plane strain.
     pub fn evaluate(&self, material: &Elasticity, at: Vector<3>, sight: Vector<3>) -> (Vector<3>, Matrix<3>) {
         let axes = Matrix::<3>::from_columns(&[self.ahead, self.normal, self.ahead.cross(&self.normal)]);
-        let plane = |p: Vector<3>| Vector2::new((p - self.origin).dot(&self.ahead), (p - self.origin).dot(&self.normal));
+        let plane =
+            |p: Vector<3>| Vector2::new((p - self.origin).dot(&self.ahead), (p - self.origin).dot(&self.normal));
         let polar = |p: Vector<3>| [plane(p).norm(), plane(p).y.atan2(plane(p).x)];
         let [r, theta] = polar(at);
         let theta = theta + TAU * ((polar(sight)[1] - theta) / TAU).round();
@@ -69,8 +70,13 @@ mod tests {
     fn gradient_equilibrium_and_free_faces() {
         let material = Elasticity { young: 3.0, poisson: 0.27, plane: PlaneState::Strain };
         let (ahead, normal) = (Vector::<3>::new(0.6, 0.0, 0.8), Vector::<3>::new(0.0, 1.0, 0.0));
-        let field =
-            CrackFrontField { origin: Vector::<3>::new(0.1, 0.2, 0.3), ahead, normal, factors: [1.0, -0.7, 1.3], t_stress: 0.4 };
+        let field = CrackFrontField {
+            origin: Vector::<3>::new(0.1, 0.2, 0.3),
+            ahead,
+            normal,
+            factors: [1.0, -0.7, 1.3],
+            t_stress: 0.4,
+        };
         let stress = |g: Matrix<3>| {
             (g + g.transpose()) * material.shear() + Matrix::from_diagonal_element(material.lame() * g.trace())
         };

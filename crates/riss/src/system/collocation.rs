@@ -97,8 +97,11 @@ impl<const D: usize> Collocation<D> {
             .into_par_iter()
             .map_init(Scratch::default, |scratch, c| {
                 let nodes = c * CHUNK..((c + 1) * CHUNK).min(n);
-                let mut part =
-                    Part { rows: RowChunk::with_capacity(nodes.len() * expected), load: vec![], fixed: vec![] };
+                let mut part = Part {
+                    rows: RowChunk::with_capacity(nodes.len() * expected),
+                    load: Vec::with_capacity(nodes.len() * D),
+                    fixed: Vec::with_capacity(nodes.len()),
+                };
                 for node in nodes {
                     self.add_row(node as u32, scratch, &mut part)?;
                 }
@@ -130,8 +133,8 @@ impl<const D: usize> Collocation<D> {
     }
 
     fn add_row(&self, node: u32, scratch: &mut Scratch<D>, part: &mut Part<D>) -> Result<()> {
-        let Scratch { buffer, shape, entries } = scratch;
-        let conditions = NodeConditions::new(&self.solid, self.cloud(), node as usize, &self.settings);
+        let Scratch { buffer, shape, entries, conditions } = scratch;
+        conditions.look_up(&self.solid, self.cloud(), node as usize, &self.settings);
         let free = Matrix::identity() - conditions.fixed;
         entries.clear();
         entries.push((node, to_block(&conditions.fixed)));
@@ -206,6 +209,7 @@ struct Scratch<const D: usize> {
     buffer: FitBuffer<D>,
     shape: ShapeFunctions<D>,
     entries: Vec<(u32, Block<D>)>,
+    conditions: NodeConditions<D>,
 }
 
 #[inline]

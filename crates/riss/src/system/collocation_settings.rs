@@ -12,7 +12,7 @@ pub struct CollocationSettings {
     /// Constrained moving least squares.
     pub approximation: ConstrainedMlsSettings,
     /// Distance from crack fronts up to which their functions are in the basis, over the spacing of nodes there; 0 for
-    /// none.
+    /// none. Where a front bends it is up to a third less, to stay away from the center of the bend.
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub front_reach: f64,
     /// Nodes on crack fronts.

@@ -136,7 +136,8 @@ impl<const D: usize> Collocation<D> {
                 n_unknowns: n * D,
                 residual: progress.residual,
                 allowed: ALLOWED,
-                hint: "; look for places where nodes are badly spread, or use fewer nodes with the direct solver".into(),
+                hint: "; look for places where nodes are badly spread, or use fewer nodes with the direct solver"
+                    .into(),
             });
         }
         let effort = SolverEffort {

@@ -2,12 +2,14 @@
 
 use riss::analysis::{Silent, SolidResult, solid_static};
 use riss::case::{AnyCase, SolidCase};
-use riss::output::{RunInfo, RunStatus, SolidResults, solid_results_schema, write_solid_results};
+use riss::output::solid_report::solid_report;
+use riss::output::{RunInfo, RunStatus, SolidResults, solid_results_schema, write_report, write_solid_results};
 use serde_json::Value;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// A small block with a crack from one side; the second crack is so small that no disc fits around its front.
+/// A small block with a crack from one side; the second crack is so small and near to a side that not every point of its
+/// front has room for a disc.
 const CASE: &str = "title = 'block'\nmethod = 'collocation'\nrigid_motion = 'mean-is-zero'\n\
     material = { young = 1000, poisson = 0.3 }\n\
     geometry.box = { lower = [0, 0, 0], upper = [4, 2, 4] }\nremote_stress.zz = 1\n\
@@ -42,10 +44,11 @@ fn results_of_solids_come_back_as_they_were() {
     let dir = tempfile::tempdir().unwrap();
     let files = write_solid_results(dir.path(), &case.model, &info(), result).unwrap();
     let names: Vec<&str> = files.iter().map(|f| f.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!(names, ["nodes-0000.vtu", "nodes.pvd", "cracks-0000.vtu", "cracks.pvd", "results.json"]);
-    let text = std::fs::read_to_string(&files[4]).unwrap();
+    let expected = ["nodes-0000.vtu", "nodes.pvd", "cracks-0000.vtu", "cracks.pvd", "report.html", "results.json"];
+    assert_eq!(names, expected);
+    let text = std::fs::read_to_string(&files[5]).unwrap();
     let read: SolidResults = serde_json::from_str(&text).unwrap();
-    assert_eq!(read.files, names[..4]);
+    assert_eq!(read.files, names[..5]);
     assert_eq!(read, SolidResults::new(&case.model, &info(), result, read.files.clone()));
     assert_eq!((read.nodes, read.unknowns), (result.n_nodes, 3 * result.n_nodes));
     assert_eq!(read.stage_time_s["solve"], 0.75);
@@ -90,4 +93,36 @@ fn stored_schema_of_solids_is_current_and_requires_every_key() {
         let keys = object["properties"].as_object().unwrap().len();
         assert_eq!(object["required"].as_array().unwrap().len(), keys, "{object}");
     }
+}
+
+#[test]
+fn the_report_of_a_solid_has_its_numbers_and_escapes_names() {
+    let (case, result) = solved();
+    let mut results = SolidResults::new(&case.model, &info(), result, vec![]);
+    results.case = "<b>block</b>".into();
+    results.fronts[0].crack = "a & b".into();
+    let page = solid_report(&results);
+    assert!(page.contains("&lt;b&gt;block&lt;/b&gt;") && !page.contains("<b>") && page.contains("a &amp; b"));
+    assert!(!page.contains("<script") && !page.contains("http"));
+    // Two charts for a front, K_I, K_II, K_III and T at every point that has them.
+    let known = results.fronts.iter().flat_map(|f| &f.points).filter(|p| p.k1.is_some()).count();
+    assert!((4..6).contains(&known), "some points of the small crack have no disc");
+    assert_eq!((page.matches("<svg").count(), page.matches("<circle").count()), (4, 4 * known));
+    results.fronts[1].points.iter_mut().for_each(|p| (p.k1, p.k2, p.k3, p.t_stress) = (None, None, None, None));
+    assert_eq!(solid_report(&results).matches("<svg").count(), 2);
+    assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
+    let k = format!("<td>{:.4}", results.fronts[0].points[1].k1.unwrap());
+    assert!(page.contains(&k), "{k}");
+}
+
+#[test]
+fn the_report_is_made_again_from_the_folder() {
+    let (case, result) = solved();
+    let dir = tempfile::tempdir().unwrap();
+    write_solid_results(dir.path(), &case.model, &info(), result).unwrap();
+    let path = dir.path().join("report.html");
+    let first = std::fs::read_to_string(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(write_report(dir.path()).unwrap(), path);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), first);
 }

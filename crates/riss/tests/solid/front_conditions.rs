@@ -66,7 +66,12 @@ fn check<const D: usize>(found: [Vector<D>; 2], expected: Vector<D>, prescribed:
     let scale = load.dot(&prescribed) / prescribed.norm_squared();
     assert!(scale > 0.0 && (load - prescribed * scale).norm() < 1e-12 * load.norm(), "{what}: load {load}");
     let error = residual / scale - (expected - prescribed);
-    assert!(error.norm() < 1e-8 * (1.0 + expected.norm()), "{what}: {} is not {}", residual / scale, expected - prescribed);
+    assert!(
+        error.norm() < 1e-8 * (1.0 + expected.norm()),
+        "{what}: {} is not {}",
+        residual / scale,
+        expected - prescribed
+    );
 }
 
 /// The faces meet at the front with outward normals down (face above) and up (face below), [C3D, Eqs. 44, 45].
