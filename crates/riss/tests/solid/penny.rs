@@ -132,7 +132,7 @@ fn check(planes: [SurfaceConditions<3>; 2], remote: [f64; 2], expected: impl Fn(
 
 #[test]
 fn tension_opens_it_by_the_same_factor_all_around() {
-    check([SurfaceConditions::symmetry(), SurfaceConditions::symmetry()], [1.0, 0.0], |_| [2.0, 0.0, 0.0], 0.02);
+    check([SurfaceConditions::symmetry(), SurfaceConditions::symmetry()], [1.0, 0.0], |_| [2.0, 0.0, 0.0], 0.025);
 }
 
 #[test]
@@ -141,5 +141,5 @@ fn shear_slides_and_tears_it() {
     let antisymmetric = SurfaceConditions { displacements: vec![held(1), held(2)], traction: VectorField::zero() };
     let factor = 4.0 / (2.0 - 0.3);
     let expected = |angle: f64| [0.0, factor * angle.cos(), 0.7 * factor * angle.sin()];
-    check([antisymmetric, SurfaceConditions::symmetry()], [0.0, 1.0], expected, 0.03);
+    check([antisymmetric, SurfaceConditions::symmetry()], [0.0, 1.0], expected, 0.04);
 }
