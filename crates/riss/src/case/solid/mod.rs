@@ -18,11 +18,9 @@ use super::{Case, MAX_BYTES, read_text};
 use crate::analysis::SolidSettings;
 use crate::material::{Elasticity, PlaneState};
 use crate::model::{RigidMotion, Solid, SolidModel};
+use crate::system::collocation::LARGEST_POISSON;
 use schema::SolidFile;
 use std::path::{Path, PathBuf};
-
-/// Largest Poisson's ratio that the iterative solver takes.
-const LARGEST_POISSON: f64 = 0.45;
 
 /// A case of any method.
 #[derive(Clone, Debug)]
@@ -156,7 +154,7 @@ fn material(file: &SolidFile, report: &mut Report) -> Elasticity {
     let m = &file.material;
     report.positive("material.young", m.young);
     if !(m.poisson > -1.0 && m.poisson <= LARGEST_POISSON) {
-        report.error("material.poisson", "out of range").allow("above -1 and up to 0.45");
+        report.error("material.poisson", "out of range").allow(format!("above -1 and up to {LARGEST_POISSON}"));
     }
     Elasticity { young: m.young, poisson: m.poisson, plane: PlaneState::Strain }
 }
