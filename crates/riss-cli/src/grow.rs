@@ -59,7 +59,7 @@ pub fn grow(
     match speech {
         Speech::Table => {
             let last = followed.last.as_ref().map_or(String::new(), table::summary);
-            let files: String = followed.files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
+            let files = results::listed(&followed.files);
             crate::print(&format!("\n{last}\ngrowth ended: {}\n\n{files}", followed.end.reason));
         }
         Speech::Json => {

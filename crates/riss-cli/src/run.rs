@@ -167,8 +167,7 @@ fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, r
     match written {
         Ok(files) => {
             if !arguments.json {
-                let lines: String = files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
-                crate::print(&format!("\n{lines}"));
+                crate::print(&format!("\n{}", results::listed(&files)));
             }
             DONE
         }

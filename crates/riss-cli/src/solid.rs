@@ -4,11 +4,13 @@ use crate::claim::Claim;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::number;
-use crate::{DONE, STOPPED, diagnostics, results};
+use crate::{DONE, STOPPED, desktop, diagnostics, results};
 use riss::analysis::{FrontRecord, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
 use riss::output::whole_file::write_whole;
-use riss::output::{RunInfo, RunStatus, SolidResults, solid_picture, write_solid_cloud, write_solid_results};
+use riss::output::{
+    REPORT_FILE, RunInfo, RunStatus, SolidResults, solid_picture, write_solid_cloud, write_solid_results,
+};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -50,8 +52,10 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
     match written {
         Ok(files) => {
             if !arguments.json {
-                let lines: String = files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
-                crate::print(&format!("\n{lines}"));
+                crate::print(&format!("\n{}", results::listed(&files)));
+            }
+            if arguments.open {
+                desktop::open(&dir.join(REPORT_FILE));
             }
             DONE
         }
@@ -73,13 +77,15 @@ fn summary(case: &SolidCase, result: &SolidResult, wall_time_s: f64) -> String {
 fn front_table(crack: &str, front: &FrontRecord) -> String {
     let ends = if front.is_closed { "closed" } else { "open" };
     let mut text = format!("\ncrack {crack}, front of length {}, {ends}\n", number(front.length));
-    text += &format!("{:>12}{:>14}{:>14}{:>14}{:>14}{:>14}\n", "s", "K_I", "K_II", "K_III", "+-", "J");
+    text += &format!("{:>12}", "s");
+    ["K_I", "K_II", "K_III", "+-", "T", "J"].iter().for_each(|head| text += &format!("{head:>14}"));
+    text.push('\n');
     for p in &front.points {
         let cell = |v: f64| format!("{:>14}", number(v));
         text += &format!("{:>12}", number(p.point.s));
         match &p.factors {
             Some(f) => {
-                f.factors.iter().chain([&f.uncertainty, &f.j]).for_each(|v| text += &cell(*v));
+                f.factors.iter().chain([&f.uncertainty, &f.t_stress, &f.j]).for_each(|v| text += &cell(*v));
                 text.push('\n');
             }
             None => text += "   no disc fits here: the spacing is too large\n",

@@ -31,7 +31,7 @@
 //! ```
 //!
 //! Solids have `fronts`: without `take`, a reference holds along all fronts of the crack; `"take": "greatest"`, `"least"`
-//! or `"mean"` picks one value. `largest_principal_stress` is that at a node.
+//! or `"mean"` picks one value, and `"at": [x, y, z]` that of the evaluated point there. `largest_principal_stress` is that at a node.
 //!
 //! ```json
 //! {

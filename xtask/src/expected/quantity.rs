@@ -21,7 +21,7 @@ pub enum Quantity {
     Front {
         /// Name of the crack.
         crack: String,
-        /// `K_I`, `K_II`, `K_III` or `J`.
+        /// `K_I`, `K_II`, `K_III`, `T` or `J`.
         key: String,
         /// Which of the values.
         along: Along,
@@ -70,7 +70,7 @@ pub enum Quantity {
 }
 
 /// Which value along the front of a crack is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
     /// The least.
     Least,
@@ -78,6 +78,8 @@ pub enum Along {
     Greatest,
     /// The mean.
     Mean,
+    /// That at the evaluated point next to this place, no farther from it than a hundredth of the front.
+    At([f64; 3]),
 }
 
 /// What a run says.
@@ -100,6 +102,7 @@ impl Quantity {
                     Along::Least => "least",
                     Along::Greatest => "greatest",
                     Along::Mean => "mean",
+                    Along::At([x, y, z]) => return format!("{key} of {crack} at ({x}, {y}, {z})"),
                 };
                 format!("{which} {key} of {crack}")
             }
@@ -145,6 +148,9 @@ impl Quantity {
 /// From all fronts of a crack; nothing if a point of them lacks the number.
 fn along_front(results: &Value, crack: &str, key: &str, along: Along) -> Option<f64> {
     let fronts = results["fronts"].as_array()?.iter().filter(|f| f["crack"] == *crack);
+    if let Along::At(place) = along {
+        return at_place(fronts, key, place);
+    }
     let points = fronts.map(|f| f["points"].as_array()).collect::<Option<Vec<_>>>()?;
     let values: Vec<f64> = points.into_iter().flatten().map(|p| p[key].as_f64()).collect::<Option<_>>()?;
     match along {
@@ -152,7 +158,26 @@ fn along_front(results: &Value, crack: &str, key: &str, along: Along) -> Option<
         Along::Greatest => values.into_iter().reduce(f64::max),
         Along::Mean if values.is_empty() => None,
         Along::Mean => Some(values.iter().sum::<f64>() / values.len() as f64),
+        Along::At(_) => None,
     }
+}
+
+/// The number at the point next to a place.
+fn at_place<'a>(fronts: impl Iterator<Item = &'a Value>, key: &str, place: [f64; 3]) -> Option<f64> {
+    let mut next: Option<(f64, f64)> = None;
+    for front in fronts {
+        let reach = 0.01 * front["length"].as_f64()?;
+        for point in front["points"].as_array()? {
+            let mut square = 0.0;
+            for d in 0..3 {
+                square += (point["position"][d].as_f64()? - place[d]).powi(2);
+            }
+            if square.sqrt() <= reach && next.is_none_or(|(least, _)| square < least) {
+                next = Some((square, point[key].as_f64()?));
+            }
+        }
+    }
+    next.map(|(_, value)| value)
 }
 
 fn word(value: &Value) -> Option<Measured> {

@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 const TIP_QUANTITIES: [&str; 7] = ["K_I", "K_II", "K_I_direct", "K_II_direct", "J", "T", "kink_angle_deg"];
-const FRONT_QUANTITIES: [&str; 4] = ["K_I", "K_II", "K_III", "J"];
+const FRONT_QUANTITIES: [&str; 5] = ["K_I", "K_II", "K_III", "T", "J"];
 const SCALARS: [&str; 2] = ["strain_energy", "energy_error"];
 
 type Object = Map<String, Value>;
@@ -103,18 +103,20 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Without `take`, the least and the greatest value must both be near the reference.
+    /// Without `take` and `at`, the least and the greatest value must both be near the reference.
     fn front(&mut self, front: &Value, place: &str) -> Result<(), String> {
         let front = object(front, place)?;
-        let known: Vec<&str> = ["crack", "take", "source"].into_iter().chain(FRONT_QUANTITIES).collect();
+        let known: Vec<&str> = ["crack", "take", "at", "source"].into_iter().chain(FRONT_QUANTITIES).collect();
         only_known(front, &known, place)?;
         let crack = text(front, "crack").ok_or_else(|| format!("{place}: `crack` is missing"))?;
-        let which = match front.get("take").map(Value::as_str) {
-            None => vec![Along::Least, Along::Greatest],
-            Some(Some("least")) => vec![Along::Least],
-            Some(Some("greatest")) => vec![Along::Greatest],
-            Some(Some("mean")) => vec![Along::Mean],
-            Some(_) => return Err(format!("{place}: `take` must be \"least\", \"greatest\" or \"mean\"")),
+        let which = match (front.get("take").map(Value::as_str), front.get("at")) {
+            (None, None) => vec![Along::Least, Along::Greatest],
+            (None, Some(at)) => vec![Along::At(triple(at).ok_or_else(|| format!("{place}: `at` must be [x, y, z]"))?)],
+            (Some(Some("least")), None) => vec![Along::Least],
+            (Some(Some("greatest")), None) => vec![Along::Greatest],
+            (Some(Some("mean")), None) => vec![Along::Mean],
+            (Some(_), None) => return Err(format!("{place}: `take` must be \"least\", \"greatest\" or \"mean\"")),
+            (Some(_), Some(_)) => return Err(format!("{place}: give either `take` or `at`")),
         };
         for key in FRONT_QUANTITIES {
             let Some(value) = front.get(key) else { continue };
@@ -218,6 +220,11 @@ fn which_tip(tip: &Object, place: &str) -> Result<(String, String), String> {
     let end = text(tip, "end").filter(|e| ["start", "end"].contains(e));
     let end = end.ok_or_else(|| format!("{place}: `end` must be \"start\" or \"end\""))?;
     Ok((crack.into(), end.into()))
+}
+
+fn triple(value: &Value) -> Option<[f64; 3]> {
+    let [x, y, z] = value.as_array()?.as_slice() else { return None };
+    Some([x.as_f64()?, y.as_f64()?, z.as_f64()?])
 }
 
 fn read_window(window: &Value, place: &str) -> Result<Window, String> {

@@ -185,3 +185,16 @@ fn fronts_are_compared_along_their_length() {
         &[true, false, true, true, false, false, true],
     );
 }
+
+#[test]
+fn fronts_are_compared_at_places() {
+    let point = |x: f64, k: f64| json!({ "position": [x, 0.0, 0.5], "K_I": k, "T": null });
+    let results = json!({ "fronts": [
+        { "crack": "a", "length": 10.0, "points": [point(0.0, 1.0), point(1.0, 2.0), point(1.03, 3.0)] },
+        { "crack": "b", "length": 10.0, "points": [point(1.0, 4.0)] },
+    ] });
+    let at = |x: f64, key: &str, value: f64| json!({ "crack": "a", "at": [x, 0.0, 0.5], (key): { "value": value, "tolerance": 1e-9 } });
+    let fronts =
+        [at(0.0, "K_I", 1.0), at(1.01, "K_I", 2.0), at(1.02, "K_I", 3.0), at(0.5, "K_I", 1.0), at(0.0, "T", 1.0)];
+    check_compare(&results, json!({ "source": "s", "fronts": fronts }), &[true, true, true, false, false]);
+}

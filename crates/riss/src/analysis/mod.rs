@@ -25,4 +25,4 @@ pub use record::*;
 pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;
 pub use solid_record::{FrontPointRecord, FrontRecord, OpenedCrack, SolidResult};
-pub use solid_static::{SolidSettings, solid_nodes, solid_static};
+pub use solid_static::{SolidSettings, solid_collocation, solid_nodes, solid_static};

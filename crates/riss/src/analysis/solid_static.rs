@@ -20,6 +20,9 @@ const DISCS: [f64; 3] = [0.5, 0.75, 1.0];
 /// Largest disc over the spacing at the front, and the smallest that is of use.
 const LARGEST_DISC: f64 = 8.0;
 const SMALLEST_DISC: f64 = 2.0;
+/// Reach of the functions of a front over its least radius of curvature, and the least share of what is asked for.
+const BEND: f64 = 0.6;
+const LEAST_REACH: f64 = 2.0 / 3.0;
 /// Directions in which a disc is probed.
 const PROBES: usize = 24;
 /// Share of a turn on each side of the crack that is not probed.
@@ -46,6 +49,18 @@ pub fn solid_nodes(model: &SolidModel, settings: &SolidSettings) -> Result<Solid
     generate_solid(&model.body, &model.cracks, &settings.spacing, settings.nodes_on_fronts)
 }
 
+/// The equations of a solid on its nodes, ready to be assembled; `obstacles` hide nodes from one another.
+pub fn solid_collocation(
+    model: &SolidModel,
+    nodes: &SolidCloud,
+    obstacles: Arc<OpaqueTriangles>,
+    settings: &SolidSettings,
+) -> Collocation<3> {
+    let fronts = model.cracks.iter().flat_map(|c| &c.fronts).map(|f| enriched(f, settings)).collect();
+    let obstacles = obstacles as Arc<dyn Opaque<3> + Send>;
+    Collocation::new(model.solid.clone(), &nodes.cloud, obstacles, fronts, settings.collocation)
+}
+
 /// Solves a cracked solid.
 ///
 /// # Errors
@@ -55,9 +70,7 @@ pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut
     let nodes = solid_nodes(model, settings)?;
     let obstacles = Arc::new(solid_obstacles(&model.body, &model.cracks));
     observer.stage(Stage::Discretization);
-    let fronts = model.cracks.iter().flat_map(|c| &c.fronts).map(|f| enriched(f, &settings.spacing)).collect();
-    let seen = obstacles.clone() as Arc<dyn Opaque<3> + Send>;
-    let collocation = Collocation::new(model.solid.clone(), &nodes.cloud, seen, fronts, settings.collocation);
+    let collocation = solid_collocation(model, &nodes, obstacles.clone(), settings);
     observer.stage(Stage::Assembly);
     let system = collocation.assemble()?;
     observer.stage(Stage::Solve);
@@ -114,10 +127,14 @@ pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut
 }
 
 /// A front with its axes, for the functions of the front near it.
-fn enriched(front: &CrackFront, spacing: &SolidSpacing) -> EnrichedFront<3> {
+fn enriched(front: &CrackFront, settings: &SolidSettings) -> EnrichedFront<3> {
     let ends = if front.is_closed { FrontEnds::Closed } else { FrontEnds::Open };
-    let least = front.points.iter().map(|p| spacing.at(p.position)).fold(f64::INFINITY, f64::min);
-    EnrichedFront::new(FrontLine::new(front.points.iter().map(frame).collect(), ends), least)
+    let least = front.points.iter().map(|p| settings.spacing.at(p.position)).fold(f64::INFINITY, f64::min);
+    let line = FrontLine::new(front.points.iter().map(frame).collect(), ends);
+    let wanted = settings.collocation.front_reach * least;
+    // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
+    let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    EnrichedFront { line, reach: wanted.min((BEND / bend).max(LEAST_REACH * wanted)) }
 }
 
 fn frame(p: &FrontPoint) -> FrontFrame<3> {
@@ -236,6 +253,9 @@ mod tests {
             let factors = p.factors.expect("a disc fits").factors;
             assert!((factors[0] / exact - 1.0).abs() < 0.02, "{factors:?}");
             assert!(factors[1].abs() < 0.02 * exact && factors[2].abs() < 0.02 * exact, "{factors:?}");
+            // T = -(1/2 + ν) σ, see `theory/collocation` in the book.
+            let t = p.factors.expect("a disc fits").t_stress;
+            assert!((t + 0.8).abs() < 0.03, "{t}");
         }
         // Opening of the crack: 8 (1 - ν²) σ/(π E) √(a² - r²) [Sneddon1946].
         let opened = &result.opened_cracks[0];
@@ -243,6 +263,29 @@ mod tests {
         for (p, gap) in opened.positions.iter().zip(&opened.gaps) {
             let expected = largest * (1.0 - p.norm_squared()).max(0.0).sqrt();
             assert!((gap - expected).abs() < 0.03 * largest, "{gap} {expected} at {p}");
+        }
+    }
+
+    /// Stress in the plane of a crack adds its part along x1 to T and leaves all else.
+    #[test]
+    fn stress_along_a_crack_shifts_t() {
+        let penny = |along: f64| {
+            let (_, result) = solve(&format!(
+                "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = 1000, poisson = 0.3 }}\n\
+                 geometry.box = {{ lower = [-2, -2, -2], upper = [2, 2, 2] }}\n\
+                 remote_stress = {{ zz = 1, xx = {along}, xy = {along} }}\n\
+                 nodes = {{ spacing = 0.8, front_spacing = 0.15, growth = 0.3 }}\nfracture.points = 5\n\
+                 crack = [{{ disc = {{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }} }}]"
+            ));
+            result.fronts[0].points.clone()
+        };
+        let (without, with) = (penny(0.0), penny(3.0));
+        for (a, b) in without.iter().zip(&with) {
+            let ahead = a.point.ahead;
+            let (a, b) = (a.factors.unwrap(), b.factors.unwrap());
+            let expected = 3.0 * (ahead.x * ahead.x + 2.0 * ahead.x * ahead.y);
+            assert!((b.t_stress - a.t_stress - expected).abs() < 1e-4, "{} {} {expected}", a.t_stress, b.t_stress);
+            assert!((0..3).all(|m| (b.factors[m] - a.factors[m]).abs() < 1e-5), "{a:?} {b:?}");
         }
     }
 }

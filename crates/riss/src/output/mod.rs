@@ -4,7 +4,7 @@
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
-//! [`solid_picture`].
+//! [`solid_report`], [`solid_picture`].
 
 mod color_map;
 pub mod comparison;
@@ -22,6 +22,7 @@ pub mod run_writer;
 pub mod shape_picture;
 pub mod solid_files;
 pub mod solid_picture;
+pub mod solid_report;
 pub mod solid_results;
 mod svg;
 mod vtk;

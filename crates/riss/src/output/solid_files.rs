@@ -1,5 +1,7 @@
 //! Files of a solid: its nodes with their fields, its cracks with their opening, its results.
 
+use super::report::REPORT_FILE;
+use super::solid_report::solid_report;
 use super::solid_results::SolidResults;
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
 use super::whole_file::write_whole;
@@ -42,8 +44,9 @@ pub fn write_solid_results(
         files.push(("cracks-0000.vtu".into(), cracks(result)));
         files.push(("cracks.pvd".into(), collection(&[(0, "cracks-0000.vtu".into())])));
     }
-    let names = files.iter().map(|f| f.0.clone()).collect();
+    let names = files.iter().map(|f| f.0.clone()).chain([REPORT_FILE.into()]).collect();
     let results = SolidResults::new(model, info, result, names);
+    files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
     let mut text = serde_json::to_string_pretty(&results)?;
     text.push('\n');
     files.push((RESULTS_FILE.into(), text.into_bytes()));
@@ -52,6 +55,11 @@ pub fn write_solid_results(
         write_whole(&path, content).map(|()| path)
     };
     files.iter().map(write).collect()
+}
+
+/// The results in a folder, if they are those of a solid.
+pub fn read_solid_results(dir: &Path) -> Option<SolidResults> {
+    serde_json::from_str(&std::fs::read_to_string(dir.join(RESULTS_FILE)).ok()?).ok()
 }
 
 fn vertices(n: usize) -> Cells {

@@ -7,6 +7,7 @@ use crate::analysis::{FrontPointRecord, SolidResult};
 use crate::model::SolidModel;
 use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -116,6 +117,12 @@ pub struct FrontPointResults {
     /// Largest deviation of a factor over the discs that it was computed on [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
+    /// Stress along `ahead` that does not fade at the front [stress].
+    #[serde(rename = "T")]
+    pub t_stress: Option<f64>,
+    /// Largest deviation of the T-stress over the discs [stress].
+    #[serde(rename = "T_uncertainty")]
+    pub t_uncertainty: Option<f64>,
     /// J-integral [stress·length].
     #[serde(rename = "J")]
     pub j: Option<f64>,
@@ -123,9 +130,12 @@ pub struct FrontPointResults {
     pub disc_radius: Option<f64>,
 }
 
-/// The JSON Schema of `results.json` of a solid.
-pub fn solid_results_schema() -> serde_json::Value {
-    schemars::schema_for!(SolidResults).to_value()
+/// JSON schema of `results.json` of a solid.
+pub fn solid_results_schema() -> String {
+    let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+    let mut schema = generator.into_root_schema_for::<SolidResults>();
+    schema.insert("title".into(), "results.json of riss for solids".into());
+    serde_json::to_string_pretty(&schema).expect("a schema is plain values") + "\n"
 }
 
 impl SolidResults {
@@ -197,6 +207,8 @@ fn point(record: &FrontPointRecord) -> FrontPointResults {
         k2: of(1),
         k3: of(2),
         k_uncertainty: factors.and_then(|f| finite(f.uncertainty)),
+        t_stress: factors.and_then(|f| finite(f.t_stress)),
+        t_uncertainty: factors.and_then(|f| finite(f.t_uncertainty)),
         j: factors.and_then(|f| finite(f.j)),
         disc_radius: record.radius.and_then(finite),
     }

@@ -26,7 +26,6 @@ use crate::model::{Domain, Model, RigidMotion, UnitNames};
 use boundary::Boundary;
 use loads::Setting;
 use report::Report;
-use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The name that stands for every outer edge.
@@ -51,7 +50,7 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     let document = &*document;
     let mut faulty = super::check::check(document, &schema, problems);
     faulty.extend(values.faulty);
-    let mut file = deserialize(document, &faulty, problems)?;
+    let mut file: CaseFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
     let mut report = Report::new(document, problems);
     for remark in imported.iter().flat_map(|m| &m.remarks) {
         report.note(import::KEY, remark);
@@ -125,27 +124,11 @@ pub(super) fn default_title(path: &Path) -> String {
     if stem == "case" { folder.unwrap_or(stem) } else { stem }
 }
 
-/// The case without its faulty sections; placeholders stand for required ones.
-fn deserialize(document: &Document, faulty: &BTreeSet<String>, problems: &mut Vec<Problem>) -> Option<CaseFile> {
-    let mut table = document.to_toml();
-    for key in faulty {
-        table.remove(key);
-        let placeholder = match key.as_str() {
-            "material" => "young = 1\npoisson = 0.3\nplane = 'strain'",
-            "geometry" => "rectangle = { lower = [0, 0], upper = [1, 1] }",
-            _ => continue,
-        };
-        table.insert(key.clone(), toml::Value::Table(placeholder.parse().expect("placeholders are TOML")));
-    }
-    match table.try_into() {
-        Ok(file) => Some(file),
-        // The schema check has seen the same types, so this is a last resort.
-        Err(e) => {
-            problems.push(Problem::new("", e.to_string().trim_end().replace('\n', ", ")));
-            None
-        }
-    }
-}
+/// Stand for required sections that are faulty.
+const PLACEHOLDERS: [(&str, &str); 2] = [
+    ("material", "young = 1\npoisson = 0.3\nplane = 'strain'"),
+    ("geometry", "rectangle = { lower = [0, 0], upper = [1, 1] }"),
+];
 
 fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     report.positive("material.young", m.young);

@@ -292,5 +292,5 @@ fn exact(exact: &SolidExact, report: &mut Report) -> Option<CrackFrontField> {
     let normal = Vector3::from(front.normal);
     let normal = unit((normal - ahead * normal.dot(&ahead)).into(), "exact.crack-front.normal", report)?;
     let factors = [front.K_I, front.K_II, front.K_III];
-    Some(CrackFrontField { origin: Vector3::from(front.origin), ahead, normal, factors })
+    Some(CrackFrontField { origin: Vector3::from(front.origin), ahead, normal, factors, t_stress: front.T })
 }

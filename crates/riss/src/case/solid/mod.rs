@@ -18,12 +18,9 @@ use super::{Case, MAX_BYTES, read_text};
 use crate::analysis::SolidSettings;
 use crate::material::{Elasticity, PlaneState};
 use crate::model::{RigidMotion, Solid, SolidModel};
+use crate::system::collocation::LARGEST_POISSON;
 use schema::SolidFile;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// Largest Poisson's ratio that the iterative solver takes.
-const LARGEST_POISSON: f64 = 0.45;
 
 /// A case of any method.
 #[derive(Clone, Debug)]
@@ -115,7 +112,7 @@ fn build(
     problems: &mut Vec<Problem>,
 ) -> Option<(SolidModel, SolidSettings, Vec<Problem>)> {
     let faulty = super::check::check(document, &solid_json_schema(), problems);
-    let file = deserialize(document, &faulty, problems)?;
+    let file: SolidFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut report = Report::new(document, problems);
     let material = material(&file, &mut report);
@@ -149,33 +146,15 @@ fn build(
     Some((model, settings?, report.notes))
 }
 
-/// The case without its faulty sections; placeholders stand for required ones.
-fn deserialize(document: &Document, faulty: &BTreeSet<String>, problems: &mut Vec<Problem>) -> Option<SolidFile> {
-    let mut table = document.to_toml();
-    for key in faulty {
-        table.remove(key);
-        let placeholder = match key.as_str() {
-            "material" => "young = 1\npoisson = 0.3",
-            "geometry" => "box = { lower = [0, 0, 0], upper = [1, 1, 1] }",
-            _ => continue,
-        };
-        table.insert(key.clone(), toml::Value::Table(placeholder.parse().expect("placeholders are TOML")));
-    }
-    match table.try_into() {
-        Ok(file) => Some(file),
-        // The schema check has seen the same types, so this is a last resort.
-        Err(e) => {
-            problems.push(Problem::new("", e.to_string().trim_end().replace('\n', ", ")));
-            None
-        }
-    }
-}
+/// Stand for required sections that are faulty.
+const PLACEHOLDERS: [(&str, &str); 2] =
+    [("material", "young = 1\npoisson = 0.3"), ("geometry", "box = { lower = [0, 0, 0], upper = [1, 1, 1] }")];
 
 fn material(file: &SolidFile, report: &mut Report) -> Elasticity {
     let m = &file.material;
     report.positive("material.young", m.young);
     if !(m.poisson > -1.0 && m.poisson <= LARGEST_POISSON) {
-        report.error("material.poisson", "out of range").allow("above -1 and up to 0.45");
+        report.error("material.poisson", "out of range").allow(format!("above -1 and up to {LARGEST_POISSON}"));
     }
     Elasticity { young: m.young, poisson: m.poisson, plane: PlaneState::Strain }
 }

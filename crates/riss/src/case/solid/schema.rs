@@ -328,6 +328,9 @@ pub(in crate::case) struct ExactFront {
     /// Mode III stress intensity factor [stress·√length].
     #[serde(default)]
     pub K_III: f64,
+    /// Stress along `ahead` that does not fade at the front [stress].
+    #[serde(default)]
+    pub T: f64,
 }
 
 /// Placement of nodes. Whatever is not given follows from the geometry.
