@@ -148,6 +148,7 @@ impl Observer for Watch<'_> {
         let times = self.progress.take_stages();
         if self.speech == Speech::Table {
             step_lines(&result.step).iter().for_each(|line| self.progress.line(line));
+            table::warnings(self.case, result).lines().for_each(|line| self.progress.line(line));
         }
         let status = match &result.step.end {
             Some(end) if exit_code(end) == DONE => RunStatus::Done,

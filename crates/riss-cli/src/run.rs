@@ -162,7 +162,9 @@ fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, r
     } else {
         let size = format!("{} nodes, {} unknowns, {:.2} s", result.n_nodes, result.n_unknowns, run.wall_time_s);
         let (title, units) = (&case.model.title, table::units_line(case.units.as_ref()));
-        crate::print(&format!("{title}\n{size}\n{units}\n{}", table::summary(result)));
+        let warnings = table::warnings(case, result);
+        let gap = if warnings.is_empty() { "" } else { "\n" };
+        crate::print(&format!("{title}\n{size}\n{units}\n{}{gap}{warnings}", table::summary(result)));
     }
     match written {
         Ok(files) => {

@@ -2,7 +2,7 @@
 //!
 //! Each is said once for each crack or part in a run, with the key of the case that it is about and a remedy.
 
-use super::record::{CrackRecord, Observer, StaticResult, TipRecord, Warning};
+use super::record::{CrackRecord, Observer, StaticResult, TipRecord, Warning, crack_key};
 use crate::crack::TipId;
 use crate::material::PlaneState;
 use crate::math::{Vector2, cross, turn_left};
@@ -62,10 +62,10 @@ impl Rails<'_> {
         if angle.abs() > SHARP_TURN {
             let name = &result.step.cracks[tip.crack].name;
             let message = format!(
-                "crack {name} turns by {:.0} degrees within one increment of {increment:.4}; halve growth.increment, or let growth.increment_control halve it",
+                "{name} turns by {:.0} degrees within one increment of {increment:.4}; take a smaller growth.increment, or growth.control = \"converged\"",
                 angle.to_degrees().abs()
             );
-            self.say("turn", "growth".into(), message, result);
+            self.say("turn", "growth.increment".into(), message, result);
         }
     }
 
@@ -83,7 +83,7 @@ impl Rails<'_> {
                 "{at}: linear elastic fracture mechanics is doubtful: the {what} {least:.4} long, and should be longer than (4/pi) (K/yield_stress)^2 = {:.4}; lower the load, or use an elastic-plastic method",
                 LINEAR * size
             );
-            self.say("plastic zone", key_of(crack), message, result);
+            self.say("plastic zone", crack_key(crack), message, result);
         }
         if !model.thickness_is_given {
             return;
@@ -121,7 +121,7 @@ impl Rails<'_> {
                 "{at}: only {across:.1} node spacings between the tip and the nearest boundary or crack, {width:.4} away at ({:.4}, {:.4}); ask for a smaller nodes spacing there",
                 toward.x, toward.y
             );
-            self.say("ligament", key_of(crack), message, result);
+            self.say("ligament", crack_key(crack), message, result);
         }
     }
 
@@ -145,7 +145,7 @@ impl Rails<'_> {
                 result.step.cracks[crack].name,
                 (100.0 * overlapping as f64 / faces.positions.len() as f64).max(1.0)
             );
-            self.say("overlap", key_of(crack), message, result);
+            self.say("overlap", crack_key(crack), message, result);
         }
     }
 
@@ -192,10 +192,6 @@ impl Rails<'_> {
             }
         }
     }
-}
-
-fn key_of(crack: usize) -> String {
-    format!("crack[{crack}]")
 }
 
 fn place(crack: &CrackRecord, tip: &TipRecord) -> String {

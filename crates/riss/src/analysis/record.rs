@@ -78,6 +78,11 @@ impl std::fmt::Display for Warning {
     }
 }
 
+/// The key of a crack of a case.
+pub(super) fn crack_key(crack: usize) -> String {
+    format!("crack[{crack}]")
+}
+
 /// Tells the observer of warnings and keeps them.
 pub(super) struct Warnings<'a> {
     pub observer: &'a mut dyn Observer,
@@ -90,7 +95,20 @@ impl<'a> Warnings<'a> {
     }
 
     pub fn add(&mut self, message: String) {
-        let warning = Warning { key: None, message };
+        self.keep(Warning { key: None, message });
+    }
+
+    /// A warning about a key of the case.
+    pub fn about(&mut self, key: &str, message: String) {
+        self.keep(Warning { key: Some(key.into()), message });
+    }
+
+    /// A warning about a crack, by its number.
+    pub fn about_crack(&mut self, crack: usize, message: String) {
+        self.about(&crack_key(crack), message);
+    }
+
+    fn keep(&mut self, warning: Warning) {
         self.observer.warning(&warning);
         self.list.push(warning);
     }

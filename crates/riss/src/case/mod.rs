@@ -132,15 +132,9 @@ impl Case {
     /// Where a key stands, such as `case.toml:3:9`; where the case does not say it, the place of what it belongs to.
     pub fn place_of(&self, key: &str) -> String {
         let document = Document::parse(&self.text, &self.overrides, &mut vec![]);
-        let mut sought = key;
-        loop {
-            let mut problem = Problem::new(sought, "");
-            document.locate(&mut problem);
-            match sought.rfind(['.', '[']) {
-                Some(end) if problem.line == 0 => sought = &sought[..end],
-                _ => return self.place(&problem),
-            }
-        }
+        let mut problem = Problem::new(key, "");
+        document.locate(&mut problem);
+        self.place(&problem)
     }
 }
 
