@@ -2,7 +2,8 @@
 //!
 //! Each is said once for each crack or part in a run, with the key of the case that it is about and a remedy.
 
-use super::record::{CrackRecord, Observer, StaticResult, TipRecord, Warning, crack_key};
+use super::record::{CrackRecord, Observer, StaticResult, TipRecord};
+use super::warnings::{Warning, crack_key};
 use crate::crack::TipId;
 use crate::material::PlaneState;
 use crate::math::{Vector2, cross, turn_left};

@@ -8,6 +8,7 @@ use super::guard_rails::Rails;
 use super::record::*;
 use super::refinement::refine;
 use super::settings::Settings;
+use super::warnings::Warnings;
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{CrackSmoothing, ShapeFunctions, Surroundings};
 use crate::crack::TipId;

@@ -15,6 +15,7 @@ pub mod refinement;
 pub mod settings;
 pub mod solid_record;
 pub mod solid_static;
+mod warnings;
 
 pub use convergence::{ConvergenceStudy, Limit, converge};
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
@@ -26,3 +27,4 @@ pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;
 pub use solid_record::{FrontPointRecord, FrontRecord, OpenedCrack, SolidResult};
 pub use solid_static::{SolidSettings, solid_collocation, solid_nodes, solid_static};
+pub use warnings::Warning;
