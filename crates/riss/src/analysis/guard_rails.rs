@@ -24,6 +24,8 @@ const OVER_LIGAMENT: f64 = 4.0;
 const AROUND_HOLE: usize = 16;
 /// Overlap of crack faces over the largest opening or sliding that is beyond numerical noise.
 const OVERLAP: f64 = 0.01;
+/// The same over the difference of displacements along a face, for cracks that hardly open or slide.
+const OVERLAP_OF_STILL: f64 = 0.001;
 /// Turn between two straight increments beyond which a path lags behind its curvature [rad].
 const SHARP_TURN: f64 = 0.35;
 
@@ -134,12 +136,14 @@ impl Rails<'_> {
         let Some(faces) = result.fields.crack_faces.get(crack) else { return };
         let jumps = || faces.left.iter().zip(&faces.right).map(|(a, b)| a - b);
         let largest = jumps().map(|j| j.norm()).fold(0.0, f64::max);
+        let along = faces.left.iter().map(|u| (u - faces.left[0]).norm()).fold(0.0, f64::max);
+        let noise = (OVERLAP * largest).max(OVERLAP_OF_STILL * along);
         let depth = |k: usize| {
             let n = faces.positions.len();
             let along = faces.positions[(k + 1).min(n - 1)] - faces.positions[k.saturating_sub(1)];
             -(faces.left[k] - faces.right[k]).dot(&turn_left(along).try_normalize(0.0).unwrap_or_default())
         };
-        let overlapping = (0..faces.positions.len()).filter(|k| depth(*k) > OVERLAP * largest).count();
+        let overlapping = (0..faces.positions.len()).filter(|k| depth(*k) > noise).count();
         if overlapping > 0 {
             let message = format!(
                 "the faces of crack {} overlap along about {:.0} % of it, where they would touch; K and J are those of faces that do not; add a [contact] section",
