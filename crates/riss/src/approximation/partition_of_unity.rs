@@ -65,7 +65,7 @@ impl ExtraFunctions {
         let mut result =
             Self { functions, regions, own_of: vec![NONE; nodes.len()], owns: vec![], n_functions: nodes.len() };
         for (i, p) in nodes.positions.iter().enumerate() {
-            let reach = nodes.support_radii[i].norm();
+            let reach = nodes.support_radii[i].max();
             let holds = |r: &ExtraRegion| {
                 let distance = (p - r.coordinates.tip()).norm();
                 distance < r.outer && distance + reach < r.clear
