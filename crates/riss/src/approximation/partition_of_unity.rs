@@ -287,8 +287,8 @@ mod tests {
         let region = ExtraRegion { coordinates, outer: 0.5, clear: 0.9 };
         let extra = ExtraFunctions::new(TipFunctions::Full, vec![region], &nodes);
         for (i, p) in nodes.positions.iter().enumerate() {
-            // The corner of the box around a support, a little outside of the support itself.
-            let expected = (p - tip).norm() < 0.5 && (p - tip).norm() + 0.4 * 2f64.sqrt() < 0.9;
+            // Supports are disks of radius 0.4.
+            let expected = (p - tip).norm() < 0.5 && (p - tip).norm() + 0.4 < 0.9;
             assert_eq!(extra.of_node(i as u32).len(), if expected { 4 } else { 0 }, "{p}");
         }
     }
