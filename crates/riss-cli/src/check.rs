@@ -2,10 +2,10 @@
 
 use crate::claim::Claim;
 use crate::table::number;
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results, solid};
 use clap::Args;
 use riss::analysis::{Silent, discretize};
-use riss::case::Case;
+use riss::case::AnyCase;
 use riss::model::Model;
 use std::path::PathBuf;
 
@@ -25,8 +25,9 @@ pub struct CheckArguments {
 
 /// Checks a case, says what it holds and draws it; returns the exit code.
 pub fn check(arguments: &CheckArguments) -> u8 {
-    let case = match Case::read(&arguments.case, &arguments.overrides) {
-        Ok(case) => case,
+    let case = match AnyCase::read(&arguments.case, &arguments.overrides) {
+        Ok(AnyCase::Plane(case)) => *case,
+        Ok(AnyCase::Solid(case)) => return solid::check(&case, arguments.out.clone()),
         Err(errors) => {
             diagnostics::report_errors(&errors);
             return BAD_CASE;

@@ -1,7 +1,7 @@
 //! Problems of a case, drawn into its text on a terminal, one plain line each elsewhere.
 
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, Severity, SourceCode};
-use riss::case::{Case, CaseErrors, Origin, Problem};
+use riss::case::{Case, CaseErrors, Origin, Problem, SolidCase};
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::IsTerminal;
@@ -20,6 +20,13 @@ pub fn report_errors(errors: &CaseErrors) {
 
 /// Reports what the author of a valid case should know.
 pub fn report_notes(case: &Case) {
+    for note in &case.notes {
+        show(note, &case.place(note), &case.path, &case.text, Severity::Warning);
+    }
+}
+
+/// Reports what the author of a valid case of a solid should know.
+pub fn report_solid_notes(case: &SolidCase) {
     for note in &case.notes {
         show(note, &case.place(note), &case.path, &case.text, Severity::Warning);
     }

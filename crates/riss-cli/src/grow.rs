@@ -59,7 +59,7 @@ pub fn grow(
     match speech {
         Speech::Table => {
             let last = followed.last.as_ref().map_or(String::new(), table::summary);
-            let files: String = followed.files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
+            let files = results::listed(&followed.files);
             crate::print(&format!("\n{last}\ngrowth ended: {}\n\n{files}", followed.end.reason));
         }
         Speech::Json => {
@@ -148,6 +148,7 @@ impl Observer for Watch<'_> {
         let times = self.progress.take_stages();
         if self.speech == Speech::Table {
             step_lines(&result.step).iter().for_each(|line| self.progress.line(line));
+            table::warnings(self.case, result).lines().for_each(|line| self.progress.line(line));
         }
         let status = match &result.step.end {
             Some(end) if exit_code(end) == DONE => RunStatus::Done,

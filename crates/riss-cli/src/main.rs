@@ -22,6 +22,7 @@ mod resume;
 mod run;
 mod schema;
 mod shape;
+mod solid;
 mod sweep;
 mod table;
 

@@ -97,7 +97,7 @@ impl Observer for Progress {
     fn warning(&mut self, warning: &Warning) {
         // Warnings return with the result; on a long run they are worth showing at once.
         if let Display::Bar(bar) = &self.display {
-            bar.println(format!("warning: {}", warning.message));
+            bar.println(format!("warning: {warning}"));
         }
     }
 }

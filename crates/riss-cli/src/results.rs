@@ -48,6 +48,11 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
+/// Written files, a line each.
+pub fn listed(files: &[PathBuf]) -> String {
+    files.iter().map(|f| format!("wrote {}\n", f.display())).collect()
+}
+
 /// Writes all files of a run into `dir`; returns their paths.
 pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) -> io::Result<Vec<PathBuf>> {
     let mut writer = RunWriter::new(dir, options(case))?;

@@ -6,10 +6,10 @@ use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::{self, Resumed};
 use crate::sweep::Sweep;
-use crate::{BAD_CASE, DONE, STOPPED, batch, desktop, diagnostics, interrupt, table};
+use crate::{BAD_CASE, DONE, STOPPED, batch, desktop, diagnostics, interrupt, solid, table};
 use clap::Args;
 use riss::analysis::{StaticResult, linear_static};
-use riss::case::Case;
+use riss::case::{AnyCase, Case};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -82,8 +82,13 @@ fn run_one(arguments: &RunArguments) -> u8 {
     let overrides = known.as_ref().map_or(vec![], |k| k.overrides.clone());
     let overrides: Vec<String> = overrides.into_iter().chain(arguments.overrides.iter().cloned()).collect();
     let path = arguments.cases.first().cloned().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
-    let case = match Case::read(&path, &overrides) {
-        Ok(case) => case,
+    let case = match AnyCase::read(&path, &overrides) {
+        Ok(AnyCase::Plane(case)) => *case,
+        Ok(AnyCase::Solid(_)) if arguments.resume.is_some() => return refuse("a solid has no growth to go on with"),
+        Ok(AnyCase::Solid(case)) => {
+            let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&path));
+            return solid::run(arguments, &case, &dir);
+        }
         Err(errors) => {
             diagnostics::report_errors(&errors);
             return BAD_CASE;
@@ -157,13 +162,14 @@ fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, r
     } else {
         let size = format!("{} nodes, {} unknowns, {:.2} s", result.n_nodes, result.n_unknowns, run.wall_time_s);
         let (title, units) = (&case.model.title, table::units_line(case.units.as_ref()));
-        crate::print(&format!("{title}\n{size}\n{units}\n{}", table::summary(result)));
+        let warnings = table::warnings(case, result);
+        let gap = if warnings.is_empty() { "" } else { "\n" };
+        crate::print(&format!("{title}\n{size}\n{units}\n{}{gap}{warnings}", table::summary(result)));
     }
     match written {
         Ok(files) => {
             if !arguments.json {
-                let lines: String = files.iter().map(|f| format!("wrote {}\n", f.display())).collect();
-                crate::print(&format!("\n{lines}"));
+                crate::print(&format!("\n{}", results::listed(&files)));
             }
             DONE
         }

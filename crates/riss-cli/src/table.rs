@@ -1,10 +1,11 @@
 //! Results on the terminal.
 
-use riss::analysis::{RefinementRecord, StaticResult, TipRecord};
+use riss::analysis::{RefinementRecord, StaticResult, TipRecord, Warning};
+use riss::case::Case;
 use riss::model::UnitNames;
 use std::fmt::Write;
 
-/// Tips, reactions and warnings as text.
+/// Tips and reactions as text.
 pub fn summary(result: &StaticResult) -> String {
     let mut text = String::new();
     let rows: Vec<Vec<String>> = tips(result).map(|(name, tip)| tip_row(name, tip)).collect();
@@ -25,10 +26,16 @@ pub fn summary(result: &StaticResult) -> String {
         writeln!(text, "\nafter {} refinements: {}", result.refinements.len() - 1, refinement_line(last))
             .expect("a string takes all");
     }
-    for warning in &result.warnings {
-        writeln!(text, "\nwarning: {}", warning.message).expect("a string takes all");
-    }
     text
+}
+
+/// The warnings of a result, a line each, with the places in the case that they are about.
+pub fn warnings(case: &Case, result: &StaticResult) -> String {
+    let line = |w: &Warning| {
+        let place = w.key.as_ref().map_or(String::new(), |key| format!("{}: ", case.place_of(key)));
+        format!("warning: {place}{w}\n")
+    };
+    result.warnings.iter().map(line).collect()
 }
 
 /// The units of a case as a line, if it says them.

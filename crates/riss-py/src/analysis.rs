@@ -189,7 +189,7 @@ impl Observer for Listener<'_> {
     }
 
     fn warning(&mut self, warning: &Warning) {
-        let _ = self.send.send(Event::Warning(warning.message.clone()));
+        let _ = self.send.send(Event::Warning(warning.to_string()));
     }
 
     fn step(&mut self, result: &StaticResult, state: Option<&GrowthState>) -> ControlFlow<()> {

@@ -2,13 +2,13 @@
 //!
 //! `cargo run --release -p riss --example near_tip_cuboid -- STEPS [ORDER [NEIGHBORS [REACH [POISSON [SEED]]]]]` with the
 //! number of steps along the long sides, 40, 76 and 112 for the nodes of the paper's table, and the reach of the
-//! functions of the front over the spacing, 0 for none.
+//! functions of the front over the spacing, 0 for none. The last lines hold the stress ahead of the front [C3D, Fig. 10].
 
 #[path = "../tests/solid/boxes.rs"]
 #[allow(dead_code)]
 mod boxes;
 
-use boxes::{Box, Crack, HalfPlane, displacement_error};
+use boxes::{Box, Crack, HalfPlane, displacement_error, stress};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
 use riss::exact::CrackFrontField;
 use riss::fracture::front_integrals;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Failure> {
     let (a, b, n) = (10.0, 4.0, argument(0, 40.0));
     let material = Elasticity { young: 200e3, poisson: argument(4, 0.3), plane: PlaneState::Strain };
     let (ahead, normal) = (axis::<3>(0), axis::<3>(2));
-    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors: [1.0, 0.0, 0.0] };
+    let field = CrackFrontField { origin: Vector::zeros(), ahead, normal, factors: [1.0, 0.0, 0.0], t_stress: 0.0 };
     let exact = move |at: &SurfacePoint<3>| field.evaluate(&material, at.position, at.sight).0;
     let mut parts = vec![SurfaceConditions::displacement(VectorField::Function(Arc::new(exact))); 6];
     parts[2] = SurfaceConditions::symmetry();
@@ -79,6 +79,12 @@ fn main() -> Result<(), Failure> {
         println!("K_I at y = {y:.1}: {}", errors.join(" "));
     }
     stage("factors", start, before);
+    println!("x, σ_zz, exact at y = z = 0");
+    for k in 0..=40 {
+        let x = 0.01 * 1000f64.powf(f64::from(k) / 40.0);
+        let found = stress(&collocation, &found.displacements, ahead * x)[(2, 2)];
+        println!("{x:.5}, {found:.6}, {:.6}", 1.0 / (std::f64::consts::TAU * x).sqrt());
+    }
     Ok(())
 }
 

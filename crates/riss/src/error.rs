@@ -55,6 +55,14 @@ pub enum Error {
         /// What may help, with a leading separator; may be empty.
         hint: String,
     },
+    /// The material is too near to incompressible for point collocation.
+    #[error("Poisson's ratio {poisson} is above {allowed}, the most that point collocation is made for")]
+    NearlyIncompressible {
+        /// Poisson's ratio.
+        poisson: f64,
+        /// The largest allowed.
+        allowed: f64,
+    },
     /// A part of the body can move without deforming.
     #[error("the body is not held: {motion} is free{}", component_text(*.component))]
     FreeRigidMotion {

@@ -1,6 +1,6 @@
 //! Reference values of a case and their comparison with a run.
 //!
-//! `expected.json` holds `source`, and any of `tips`, `strain_energy`, `energy_error`, `reactions`, `paths`, `end` and
+//! `expected.json` holds `source`, and any of `tips`, `fronts`, `largest_principal_stress`, `strain_energy`, `energy_error`, `reactions`, `paths`, `end` and
 //! `cycles`. A reference is `{"value": 1.0, "tolerance": 0.01}` with a relative tolerance, or `"absolute"` in its place,
 //! and may name its own `source`:
 //!
@@ -29,6 +29,16 @@
 //!   "cycles": [{ "crack": "left", "length": 2.5, "value": 1.2e5, "tolerance": 0.01 }]
 //! }
 //! ```
+//!
+//! Solids have `fronts`: without `take`, a reference holds along all fronts of the crack; `"take": "greatest"`, `"least"`
+//! or `"mean"` picks one value, and `"at": [x, y, z]` that of the evaluated point there. `largest_principal_stress` is that at a node.
+//!
+//! ```json
+//! {
+//!   "source": "Sneddon (1946)",
+//!   "fronts": [{ "crack": "penny", "K_I": { "value": 1.128, "tolerance": 0.01 } }]
+//! }
+//! ```
 
 mod path;
 mod quantity;
@@ -36,7 +46,7 @@ mod read;
 mod run;
 
 pub use path::{Point, Window};
-pub use quantity::{Measured, Quantity};
+pub use quantity::{Along, Measured, Quantity};
 pub use run::{CaseRun, run_case};
 
 use serde_json::Value;

@@ -17,6 +17,17 @@ pub enum Quantity {
         /// Step of the run; 0 without growth.
         step: usize,
     },
+    /// A number along the front of a crack in a solid.
+    Front {
+        /// Name of the crack.
+        crack: String,
+        /// `K_I`, `K_II`, `K_III`, `T` or `J`.
+        key: String,
+        /// Which of the values.
+        along: Along,
+    },
+    /// The largest principal stress at a node of a solid.
+    LargestPrincipalStress,
     /// A number of the whole body, in the first step.
     Scalar(String),
     /// A component of the force on a supported part, in the first step.
@@ -58,6 +69,19 @@ pub enum Quantity {
     },
 }
 
+/// Which value along the front of a crack is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// The least.
+    Least,
+    /// The greatest.
+    Greatest,
+    /// The mean.
+    Mean,
+    /// That at the evaluated point next to this place, no farther from it than a hundredth of the front.
+    At([f64; 3]),
+}
+
 /// What a run says.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Measured {
@@ -73,6 +97,16 @@ impl Quantity {
         match self {
             Self::Tip { crack, end, key, step: 0 } => format!("{key} at {crack}, {end}"),
             Self::Tip { crack, end, key, step } => format!("{key} at {crack}, {end}, step {step}"),
+            Self::Front { crack, key, along } => {
+                let which = match along {
+                    Along::Least => "least",
+                    Along::Greatest => "greatest",
+                    Along::Mean => "mean",
+                    Along::At([x, y, z]) => return format!("{key} of {crack} at ({x}, {y}, {z})"),
+                };
+                format!("{which} {key} of {crack}")
+            }
+            Self::LargestPrincipalStress => "largest principal stress".into(),
             Self::Scalar(key) => key.replace('_', " "),
             Self::Reaction { part, axis } => format!("reaction {axis} of {part}"),
             Self::Path { crack, .. } => format!("path of {crack}, distance"),
@@ -90,6 +124,8 @@ impl Quantity {
         let first = steps.first().unwrap_or(&Value::Null);
         let number = match self {
             Self::Tip { crack, end, key, step } => tip(steps.get(*step)?, crack, end)?[key].as_f64()?,
+            Self::Front { crack, key, along } => along_front(results, crack, key, *along)?,
+            Self::LargestPrincipalStress => results["stress"]["largest_principal"].as_f64()?,
             // A run with growth has a strain energy in every step, and the last one has none if the body came apart.
             Self::Scalar(key) => first[key].as_f64().or_else(|| results[key].as_f64())?,
             Self::Reaction { part, axis } => first["reactions"][part][usize::from(axis == "y")].as_f64()?,
@@ -107,6 +143,41 @@ impl Quantity {
         };
         Some(Measured::Number(number))
     }
+}
+
+/// From all fronts of a crack; nothing if a point of them lacks the number.
+fn along_front(results: &Value, crack: &str, key: &str, along: Along) -> Option<f64> {
+    let fronts = results["fronts"].as_array()?.iter().filter(|f| f["crack"] == *crack);
+    if let Along::At(place) = along {
+        return at_place(fronts, key, place);
+    }
+    let points = fronts.map(|f| f["points"].as_array()).collect::<Option<Vec<_>>>()?;
+    let values: Vec<f64> = points.into_iter().flatten().map(|p| p[key].as_f64()).collect::<Option<_>>()?;
+    match along {
+        Along::Least => values.into_iter().reduce(f64::min),
+        Along::Greatest => values.into_iter().reduce(f64::max),
+        Along::Mean if values.is_empty() => None,
+        Along::Mean => Some(values.iter().sum::<f64>() / values.len() as f64),
+        Along::At(_) => None,
+    }
+}
+
+/// The number at the point next to a place.
+fn at_place<'a>(fronts: impl Iterator<Item = &'a Value>, key: &str, place: [f64; 3]) -> Option<f64> {
+    let mut next: Option<(f64, f64)> = None;
+    for front in fronts {
+        let reach = 0.01 * front["length"].as_f64()?;
+        for point in front["points"].as_array()? {
+            let mut square = 0.0;
+            for d in 0..3 {
+                square += (point["position"][d].as_f64()? - place[d]).powi(2);
+            }
+            if square.sqrt() <= reach && next.is_none_or(|(least, _)| square < least) {
+                next = Some((square, point[key].as_f64()?));
+            }
+        }
+    }
+    next.map(|(_, value)| value)
 }
 
 fn word(value: &Value) -> Option<Measured> {

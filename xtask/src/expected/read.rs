@@ -1,12 +1,14 @@
 //! Reads `expected.json`.
 
 use super::path::{self, Window};
+use super::quantity::Along;
 use super::{Expected, Quantity, Reference, RunBy, Target, Tolerance};
 use serde_json::{Map, Value};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
 const TIP_QUANTITIES: [&str; 7] = ["K_I", "K_II", "K_I_direct", "K_II_direct", "J", "T", "kink_angle_deg"];
+const FRONT_QUANTITIES: [&str; 5] = ["K_I", "K_II", "K_III", "T", "J"];
 const SCALARS: [&str; 2] = ["strain_energy", "energy_error"];
 
 type Object = Map<String, Value>;
@@ -32,7 +34,10 @@ impl Expected {
     pub fn parse(text: &str, file: &dyn Fn(&str) -> Result<String, String>) -> Result<Self, String> {
         let root: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let root = object(&root, "the file")?;
-        let known = ["source", "run", "tips", "reactions", "paths", "end", "cycles"].into_iter().chain(SCALARS);
+        let known =
+            ["source", "run", "tips", "fronts", "largest_principal_stress", "reactions", "paths", "end", "cycles"]
+                .into_iter()
+                .chain(SCALARS);
         only_known(root, &known.collect::<Vec<_>>(), "the file")?;
         let source = root.get("source").and_then(Value::as_str).ok_or("`source` is missing")?;
         let run_by = match root.get("run").map(Value::as_str) {
@@ -43,6 +48,12 @@ impl Expected {
         let mut reader = Reader { source, references: vec![] };
         for (place, tip) in list(root, "tips")? {
             reader.tip(tip, &place)?;
+        }
+        for (place, front) in list(root, "fronts")? {
+            reader.front(front, &place)?;
+        }
+        if let Some(value) = root.get("largest_principal_stress") {
+            reader.number(value, Quantity::LargestPrincipalStress, "largest_principal_stress", source)?;
         }
         for key in SCALARS {
             if let Some(value) = root.get(key) {
@@ -86,6 +97,32 @@ impl Reader<'_> {
             if let Some(value) = tip.get(key) {
                 let quantity = Quantity::Tip { crack: crack.clone(), end: end.clone(), key: key.into(), step };
                 let source = text(tip, "source").unwrap_or(self.source);
+                self.number(value, quantity, &format!("{place}.{key}"), source)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Without `take` and `at`, the least and the greatest value must both be near the reference.
+    fn front(&mut self, front: &Value, place: &str) -> Result<(), String> {
+        let front = object(front, place)?;
+        let known: Vec<&str> = ["crack", "take", "at", "source"].into_iter().chain(FRONT_QUANTITIES).collect();
+        only_known(front, &known, place)?;
+        let crack = text(front, "crack").ok_or_else(|| format!("{place}: `crack` is missing"))?;
+        let which = match (front.get("take").map(Value::as_str), front.get("at")) {
+            (None, None) => vec![Along::Least, Along::Greatest],
+            (None, Some(at)) => vec![Along::At(triple(at).ok_or_else(|| format!("{place}: `at` must be [x, y, z]"))?)],
+            (Some(Some("least")), None) => vec![Along::Least],
+            (Some(Some("greatest")), None) => vec![Along::Greatest],
+            (Some(Some("mean")), None) => vec![Along::Mean],
+            (Some(_), None) => return Err(format!("{place}: `take` must be \"least\", \"greatest\" or \"mean\"")),
+            (Some(_), Some(_)) => return Err(format!("{place}: give either `take` or `at`")),
+        };
+        for key in FRONT_QUANTITIES {
+            let Some(value) = front.get(key) else { continue };
+            for along in &which {
+                let quantity = Quantity::Front { crack: crack.into(), key: key.into(), along: *along };
+                let source = text(front, "source").unwrap_or(self.source);
                 self.number(value, quantity, &format!("{place}.{key}"), source)?;
             }
         }
@@ -183,6 +220,11 @@ fn which_tip(tip: &Object, place: &str) -> Result<(String, String), String> {
     let end = text(tip, "end").filter(|e| ["start", "end"].contains(e));
     let end = end.ok_or_else(|| format!("{place}: `end` must be \"start\" or \"end\""))?;
     Ok((crack.into(), end.into()))
+}
+
+fn triple(value: &Value) -> Option<[f64; 3]> {
+    let [x, y, z] = value.as_array()?.as_slice() else { return None };
+    Some([x.as_f64()?, y.as_f64()?, z.as_f64()?])
 }
 
 fn read_window(window: &Value, place: &str) -> Result<Window, String> {

@@ -163,3 +163,38 @@ fn numbers_are_short() {
         assert_eq!(number(value), text);
     }
 }
+
+#[test]
+fn fronts_are_compared_along_their_length() {
+    let point = |k: f64, k2: f64| json!({ "K_I": k, "K_II": k2 });
+    let results = json!({
+        "stress": { "largest_principal": 2.04 },
+        "fronts": [
+            { "crack": "penny", "points": [point(1.12, 0.6), point(1.14, -0.6)] },
+            { "crack": "other", "points": [{ "K_I": null }] },
+        ],
+    });
+    check_compare(
+        &results,
+        json!({ "source": "s", "largest_principal_stress": { "value": 2.045, "tolerance": 0.01 },
+            "fronts": [
+                { "crack": "penny", "K_I": { "value": 1.128, "tolerance": 0.01 } },
+                { "crack": "penny", "take": "greatest", "K_II": { "value": 0.6, "tolerance": 0.01 } },
+                { "crack": "penny", "take": "mean", "K_II": { "value": 0.0, "absolute": 1e-9 } },
+                { "crack": "other", "K_I": { "value": 1.0, "tolerance": 0.5 } } ] }),
+        &[true, false, true, true, false, false, true],
+    );
+}
+
+#[test]
+fn fronts_are_compared_at_places() {
+    let point = |x: f64, k: f64| json!({ "position": [x, 0.0, 0.5], "K_I": k, "T": null });
+    let results = json!({ "fronts": [
+        { "crack": "a", "length": 10.0, "points": [point(0.0, 1.0), point(1.0, 2.0), point(1.03, 3.0)] },
+        { "crack": "b", "length": 10.0, "points": [point(1.0, 4.0)] },
+    ] });
+    let at = |x: f64, key: &str, value: f64| json!({ "crack": "a", "at": [x, 0.0, 0.5], (key): { "value": value, "tolerance": 1e-9 } });
+    let fronts =
+        [at(0.0, "K_I", 1.0), at(1.01, "K_I", 2.0), at(1.02, "K_I", 3.0), at(0.5, "K_I", 1.0), at(0.0, "T", 1.0)];
+    check_compare(&results, json!({ "source": "s", "fronts": fronts }), &[true, true, true, false, false]);
+}

@@ -4,9 +4,11 @@ use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
 use super::error_bars::widen_error_bars;
 use super::fields::sample_fields;
+use super::guard_rails::Rails;
 use super::record::*;
 use super::refinement::refine;
 use super::settings::Settings;
+use super::warnings::Warnings;
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{CrackSmoothing, ShapeFunctions, Surroundings};
 use crate::crack::TipId;
@@ -34,7 +36,8 @@ const TIP_STEP: f64 = 1e-5;
 /// # Errors
 /// Every variant of [`Error`]; tips without room for a domain are reported, not refused.
 pub fn linear_static(model: &Model, settings: &Settings, observer: &mut dyn Observer) -> Result<StaticResult> {
-    let result = solve_step(model, settings, 0, observer)?;
+    let mut result = solve_step(model, settings, 0, observer)?;
+    Rails { said: &mut vec![], observer }.inspect(model, &mut result);
     // There is nothing left to break off.
     let _ = observer.step(&result, None);
     Ok(result)
@@ -134,10 +137,13 @@ pub(super) fn solve_on(
 ) -> Result<Solved> {
     let (solution, method) = solve_once(model, settings, &discrete, warnings)?;
     if model.rigid_motion == RigidMotion::MeanIsZero && solution.imbalance > UNBALANCED {
-        warnings.add(format!(
-            "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
-            100.0 * solution.imbalance
-        ));
+        warnings.about(
+            "rigid_motion",
+            format!(
+                "the loads are out of balance by {:.2} %; a body force like that of an acceleration balances them",
+                100.0 * solution.imbalance
+            ),
+        );
     }
     warnings.observer.stage(Stage::Fracture);
     let mut cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
@@ -193,7 +199,7 @@ pub(super) fn solve_once(
             (result, _) => {
                 let (solution, search) = result?;
                 if search.n_changed > 0 {
-                    warnings.add(unsettled(&search));
+                    warnings.about("contact", unsettled(&search));
                 }
                 return Ok((solution, method));
             }
@@ -251,11 +257,11 @@ fn evaluate_tip(
     }
     let radii = match view.radii(settings.fracture.domain, settings.fracture.radii.as_deref()) {
         Ok((radii, note)) => {
-            note.into_iter().for_each(|n| warnings.add(n));
+            note.into_iter().for_each(|n| warnings.about_crack(id.crack, n));
             radii
         }
         Err(e) => {
-            warnings.add(e.to_string());
+            warnings.about_crack(id.crack, e.to_string());
             return Ok(record);
         }
     };

@@ -1,6 +1,7 @@
 //! What an analysis reports.
 
 use super::crack_growth::GrowthState;
+use super::warnings::Warning;
 use crate::crack::{End, EndKind, TipFrame};
 use crate::math::{Matrix2, Vector2};
 use schemars::JsonSchema;
@@ -61,31 +62,6 @@ pub trait Observer {
 pub struct Silent;
 
 impl Observer for Silent {}
-
-/// A result that stands, but deserves a second look.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Warning {
-    /// What happened, with numbers, and what to do.
-    pub message: String,
-}
-
-/// Tells the observer of warnings and keeps them.
-pub(super) struct Warnings<'a> {
-    pub observer: &'a mut dyn Observer,
-    pub list: Vec<Warning>,
-}
-
-impl<'a> Warnings<'a> {
-    pub fn new(observer: &'a mut dyn Observer) -> Self {
-        Self { observer, list: vec![] }
-    }
-
-    pub fn add(&mut self, message: String) {
-        let warning = Warning { message };
-        self.observer.warning(&warning);
-        self.list.push(warning);
-    }
-}
 
 /// One step; a static analysis has one.
 #[derive(Clone, Debug, PartialEq)]

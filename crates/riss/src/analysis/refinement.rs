@@ -6,8 +6,9 @@
 
 use super::energy::strain_energy;
 use super::linear_static::{Solved, discretize, discretize_at, solve_on};
-use super::record::{CrackRecord, Observer, RefinementRecord, TipRecord, Warnings};
+use super::record::{CrackRecord, Observer, RefinementRecord, TipRecord};
 use super::settings::Settings;
+use super::warnings::Warnings;
 use crate::adaptivity::{AccuracySettings, ErrorEstimate, Quadtree, estimate_error, mark};
 use crate::error::Result;
 use crate::math::Vector2;

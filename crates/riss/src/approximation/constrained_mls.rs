@@ -31,8 +31,9 @@ const DEPENDENT_FRONT: f64 = 1e-6;
 /// Nearer to a front than this share of the support, its functions have no derivatives that could be used.
 const CORE: f64 = 1e-6;
 /// Reach of the functions of a front over the spacing of nodes there: from here on the error of the polynomials
-/// outside no longer counts. At 4 the factors are off by 2 %, at 6 by 0.1 to 0.8 %, at 8 by 0.04 %.
-const REACH: f64 = 8.0;
+/// outside no longer counts. At 4 the factors are off by 2 %, at 6 by 0.1 to 0.8 %, at 8 by 0.02 to 0.1 %, at 12 by 0.002
+/// to 0.05 %.
+pub const REACH: f64 = 12.0;
 
 /// Constrained moving least squares over a cloud.
 #[derive(Clone)]

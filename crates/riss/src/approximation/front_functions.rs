@@ -53,6 +53,21 @@ impl<const D: usize> FrontFrame<D> {
         [(2.0 * a + self.curvature * in_plane2) / (1.0 + (1.0 + q).max(0.0).sqrt()), n]
     }
 
+    /// The frame where the plane normal to the arc holds a point.
+    fn slid_to(&self, at: Vector<D>) -> Self {
+        let d = at - self.position;
+        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
+        let along = d - self.ahead * a - self.normal * n;
+        let reach = 1.0 + self.curvature * a;
+        let stretch = reach.hypot(self.curvature * along.norm());
+        if reach <= 0.0 {
+            return *self;
+        }
+        let ahead = (self.ahead * reach + along * self.curvature) / stretch;
+        let drop = self.curvature * along.norm_squared() / (stretch * (stretch + reach));
+        Self { position: self.position + along / stretch - self.ahead * drop, ahead, ..*self }
+    }
+
     /// Distance and angle; `sight` tells the side of points on the crack, where the angle is ±π.
     #[inline]
     pub fn polar(&self, at: Vector<D>, sight: Vector<D>) -> [f64; 2] {
@@ -152,7 +167,7 @@ impl<const D: usize> FrontLine<D> {
             let frame = between(a, b, t);
             let distance = (at - frame.position).norm_squared();
             if best.is_none_or(|(least, _)| distance < least) {
-                best = Some((distance, frame));
+                best = Some((distance, if t > 0.0 && t < 1.0 { frame.slid_to(at) } else { frame }));
             }
         }
         best.map(|(_, frame)| frame)

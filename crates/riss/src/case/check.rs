@@ -175,8 +175,8 @@ impl<'a> Checker<'a> {
             self.report(key, node, "a table, not a name".into()).suggest(format!("write [{key}.{text}]"));
             return;
         }
-        let planned = key == "method" && text == "collocation";
-        let message = if planned { "this method is not available yet" } else { "unknown name" };
+        let is_solid = key == "method" && text == "collocation";
+        let message = if is_solid { "only `riss run` and `riss check` take solids" } else { "unknown name" };
         self.report(key, node, message.into()).one_of(text, names.into_iter().chain(tables));
     }
 

@@ -12,6 +12,7 @@ mod expression;
 pub mod gmsh;
 mod problem;
 mod schema;
+mod solid;
 mod units;
 mod values;
 
@@ -22,6 +23,7 @@ use build::Built;
 use document::Document;
 pub use problem::{CaseErrors, Origin, Problem};
 pub use schema::OutputSettings;
+pub use solid::{AnyCase, SolidCase, solid_json_schema};
 use std::path::{Path, PathBuf};
 
 /// Larger files are refused.
@@ -125,6 +127,14 @@ impl Case {
     /// Where a note stands, such as `case.toml:3:9`.
     pub fn place(&self, note: &Problem) -> String {
         problem::place(&self.path, &self.overrides, note)
+    }
+
+    /// Where a key stands, such as `case.toml:3:9`; where the case does not say it, the place of what it belongs to.
+    pub fn place_of(&self, key: &str) -> String {
+        let document = Document::parse(&self.text, &self.overrides, &mut vec![]);
+        let mut problem = Problem::new(key, "");
+        document.locate(&mut problem);
+        self.place(&problem)
     }
 }
 

@@ -17,6 +17,8 @@ pub struct CrackFrontField {
     /// Factors of modes I, II and III [stress·√length]. Positive ones open the crack, slide the face at `x2 > 0` to `+x1`
     /// and tear it to `+x3`, `x3 = x1 × x2`.
     pub factors: [f64; 3],
+    /// Stress along x1 that does not fade at the front [stress].
+    pub t_stress: f64,
 }
 
 /// Gradient in the tip frame of the displacement of a unit mode III, which lies along the front:
@@ -33,17 +35,16 @@ impl CrackFrontField {
     /// The plane state of the material must be that of plane strain.
     pub fn evaluate(&self, material: &Elasticity, at: Vector<3>, sight: Vector<3>) -> (Vector<3>, Matrix<3>) {
         let axes = Matrix::<3>::from_columns(&[self.ahead, self.normal, self.ahead.cross(&self.normal)]);
-        let polar = |p: Vector<3>| {
-            let d = p - self.origin;
-            let [x, y] = [d.dot(&self.ahead), d.dot(&self.normal)];
-            [x.hypot(y), y.atan2(x)]
-        };
+        let plane =
+            |p: Vector<3>| Vector2::new((p - self.origin).dot(&self.ahead), (p - self.origin).dot(&self.normal));
+        let polar = |p: Vector<3>| [plane(p).norm(), plane(p).y.atan2(plane(p).x)];
         let [r, theta] = polar(at);
         let theta = theta + TAU * ((polar(sight)[1] - theta) / TAU).round();
         if r == 0.0 {
             return Default::default();
         }
-        let (mut u, mut gradient) = (Vector2::zeros(), Matrix2::zeros());
+        let mut gradient = material.strain(&Matrix2::new(self.t_stress, 0.0, 0.0, 0.0));
+        let mut u = gradient * plane(at);
         for (mode, k) in [(TipMode::Opening, self.factors[0]), (TipMode::Sliding, self.factors[1])] {
             let (value, slope) = tip_field(mode, material, r, theta);
             u += value * k;
@@ -69,8 +70,13 @@ mod tests {
     fn gradient_equilibrium_and_free_faces() {
         let material = Elasticity { young: 3.0, poisson: 0.27, plane: PlaneState::Strain };
         let (ahead, normal) = (Vector::<3>::new(0.6, 0.0, 0.8), Vector::<3>::new(0.0, 1.0, 0.0));
-        let field =
-            CrackFrontField { origin: Vector::<3>::new(0.1, 0.2, 0.3), ahead, normal, factors: [1.0, -0.7, 1.3] };
+        let field = CrackFrontField {
+            origin: Vector::<3>::new(0.1, 0.2, 0.3),
+            ahead,
+            normal,
+            factors: [1.0, -0.7, 1.3],
+            t_stress: 0.4,
+        };
         let stress = |g: Matrix<3>| {
             (g + g.transpose()) * material.shear() + Matrix::from_diagonal_element(material.lame() * g.trace())
         };
@@ -88,6 +94,10 @@ mod tests {
         for side in [1.0, -1.0] {
             let (u, g) = field.evaluate(&material, behind, behind + normal * side * 1e-9);
             assert!((stress(g) * normal).norm() < 1e-12);
+            // Without factors nothing but T is left of the stress along the crack.
+            let rest = CrackFrontField { factors: [0.0; 3], ..field };
+            let along = stress(rest.evaluate(&material, behind, behind).1);
+            assert!((along * ahead - ahead * 0.4).norm() < 1e-12);
             assert!((u.dot(&normal) * side) > 0.0 && u.dot(&ahead.cross(&normal)) * side > 0.0);
         }
     }

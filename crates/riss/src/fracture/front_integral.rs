@@ -1,10 +1,11 @@
-//! Stress intensity factors and J at points of a crack front, in the plane and in space.
+//! Stress intensity factors, T-stress and J at points of a crack front, in the plane and in space.
 //!
 //! Over the disc normal to the front, with `P_1j = W δ_1j - σ_kj u_k,1` in the frame of the front point and `q` falling
 //! from one to zero [Moran1987],
 //! `J = -∫ P_1α q,α dA + ∫ (P_13,3 - b_k u_k,1) q dA - ∫_faces t_k u_k,1 q ds`, α = 1, 2.
 //! The second term holds what changes along the front; its derivatives are those of the fit. The auxiliary fields are
 //! those of a straight front, which are exact in the disc, so that no term for the curvature of the front is missing.
+//! The one for T is that of a unit force per length of the front, along `ahead` [Nakamura1992].
 
 use crate::approximation::{FitBuffer, FrontFrame, ShapeFunctions};
 use crate::error::Result;
@@ -23,10 +24,12 @@ const PLATEAU: f64 = 0.5;
 /// Gauss points along the radius in the plateau and in the slope, and around each half of the disc.
 const RADIAL: usize = 8;
 const ANGULAR: usize = 20;
-/// Gauss points along each face.
-const FACE: usize = 16;
+/// Gauss points along each face, where `q` is one and where it falls.
+const FACE: usize = 10;
 /// Points on faces look from this far off, over the radius.
 const OFF: f64 = 1e-6;
+/// The strain along the front is taken this far ahead of it, over the radius: what changes with √r there no longer counts.
+const BESIDE: f64 = 1e-5;
 
 /// Fracture quantities at a point of a front from one disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +38,8 @@ pub struct FrontIntegrals {
     pub radius: f64,
     /// Factors of modes I, II and III [stress·√length]; the last is zero in the plane.
     pub factors: [f64; 3],
+    /// Stress along `ahead` that does not fade at the front [stress].
+    pub t_stress: f64,
     /// J-integral [stress·length].
     pub j: f64,
 }
@@ -46,6 +51,10 @@ pub struct FrontFactors {
     pub factors: [f64; 3],
     /// Largest deviation of a disc from the mean, over all modes [stress·√length].
     pub uncertainty: f64,
+    /// Stress along `ahead` that does not fade at the front, mean of all discs [stress].
+    pub t_stress: f64,
+    /// Largest deviation of the T-stress of a disc from the mean [stress].
+    pub t_uncertainty: f64,
     /// J-integral, mean of all discs [stress·length].
     pub j: f64,
 }
@@ -56,9 +65,12 @@ impl FrontFactors {
         let n = discs.len() as f64;
         let factors = std::array::from_fn(|m| discs.iter().map(|d| d.factors[m]).sum::<f64>() / n);
         let off = |d: &FrontIntegrals| (0..3).map(|m| (d.factors[m] - factors[m]).abs()).fold(0.0, f64::max);
+        let t_stress = discs.iter().map(|d| d.t_stress).sum::<f64>() / n;
         Self {
             factors,
             uncertainty: discs.iter().map(off).fold(0.0, f64::max),
+            t_stress,
+            t_uncertainty: discs.iter().map(|d| (d.t_stress - t_stress).abs()).fold(0.0, f64::max),
             j: discs.iter().map(|d| d.j).sum::<f64>() / n,
         }
     }
@@ -68,6 +80,9 @@ impl FrontFactors {
 ///
 /// The discs must lie inside the body, and the crack must be plane in them. The tangent that belongs to mode III is
 /// `ahead` × `normal`.
+///
+/// `T = E' (I + ν ε_33) + σ_22` with the interaction `I` with the unit force, the strain along the front and the stress
+/// that tractions on the faces leave across the crack [Nakamura1992].
 ///
 /// # Errors
 /// Those of the shape functions.
@@ -88,8 +103,40 @@ fn axes<const D: usize>(frame: &FrontFrame<D>) -> Matrix<D> {
     Matrix::from_fn(|i, j| columns[j][i])
 }
 
-/// Interactions with modes I to III, and the solution with itself.
-type Integrals = [f64; 4];
+/// Interactions with modes I to III and with the unit force, and the solution with itself.
+type Integrals = [f64; 5];
+
+/// Fields that the solution interacts with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Auxiliary {
+    Opening,
+    Sliding,
+    Tearing,
+    /// Unit force per length on the front, along `ahead`.
+    Force,
+}
+
+impl Auxiliary {
+    /// Those that there are in `D` dimensions, each with its place in [`Integrals`].
+    fn all<const D: usize>() -> impl Iterator<Item = (usize, Self)> {
+        let all = [Self::Opening, Self::Sliding, Self::Tearing, Self::Force];
+        all.into_iter().enumerate().filter(|(_, mode)| D == 3 || *mode != Self::Tearing)
+    }
+
+    /// Displacement gradient at a straight front.
+    fn gradient<const D: usize>(self, material: &Elasticity, r: f64, theta: f64) -> Matrix<D> {
+        let in_plane = |mode| {
+            let (_, gradient) = tip_field(mode, material, r, theta);
+            Matrix::from_fn(|i, j| if i < 2 && j < 2 { gradient[(i, j)] } else { 0.0 })
+        };
+        match self {
+            Self::Opening => in_plane(TipMode::Opening),
+            Self::Sliding => in_plane(TipMode::Sliding),
+            Self::Force => in_plane(TipMode::PointForce),
+            Self::Tearing => axis::<D>(D - 1) * out_of_plane_gradient::<D>(material, r, theta).transpose(),
+        }
+    }
+}
 
 struct Disc<'a, const D: usize> {
     collocation: &'a Collocation<D>,
@@ -118,25 +165,40 @@ struct State<const D: usize> {
 impl<const D: usize> Disc<'_, D> {
     fn integrate(&self, radius: f64) -> Result<FrontIntegrals> {
         let solid = &self.collocation.solid;
-        let mut points = ring(PLATEAU * radius, radius);
+        let mut points = slope_points(PLATEAU * radius, radius);
         if D == 3 || !is_zero(&solid.body_force) {
-            points.extend(ring(0.0, PLATEAU * radius));
+            points.extend(plateau_points(PLATEAU * radius));
         }
         let values: Vec<Integrals> = points
             .par_iter()
             .map_init(Default::default, |buffer, p| self.area_term(p, radius, buffer))
             .collect::<Result<_>>()?;
-        let mut sum = [0.0; 4];
+        let mut sum = Integrals::default();
         // In order, so that any number of threads gives the same bits.
-        values.iter().for_each(|v| (0..4).for_each(|i| sum[i] += v[i]));
+        values.iter().for_each(|v| (0..5).for_each(|i| sum[i] += v[i]));
         if !solid.faces.get(self.crack).is_none_or(is_zero) {
             let faces = self.face_terms(radius)?;
-            (0..4).for_each(|i| sum[i] += faces[i]);
+            (0..5).for_each(|i| sum[i] += faces[i]);
         }
         let material = &solid.material;
         let young = material.effective_young();
         let factors = [0.5 * young * sum[0], 0.5 * young * sum[1], material.shear() * sum[2]];
-        Ok(FrontIntegrals { radius, factors, j: sum[3] })
+        let along = if D == 3 { material.poisson * self.strain_along(radius)? } else { 0.0 };
+        let t_stress = young * (sum[3] + along) + self.stress_across();
+        Ok(FrontIntegrals { radius, factors, t_stress, j: sum[4] })
+    }
+
+    /// Strain along the front, just ahead of it.
+    fn strain_along(&self, radius: f64) -> Result<f64> {
+        let at = self.place(BESIDE * radius, 0.0);
+        Ok(self.state(at, at, &mut Default::default())?.gradient[(D - 1, D - 1)])
+    }
+
+    /// Stress across the crack at the front, which is that of the tractions on its faces.
+    fn stress_across(&self) -> f64 {
+        let (position, normal) = (self.frame.position, -self.frame.normal);
+        let at = SurfacePoint { position, normal, sight: position };
+        self.collocation.solid.faces.get(self.crack).map_or(0.0, |f| f.value(&at).dot(&normal))
     }
 
     fn place(&self, r: f64, theta: f64) -> Vector<D> {
@@ -177,11 +239,11 @@ impl<const D: usize> Disc<'_, D> {
         let force = self.axes.transpose() * solid.body_force.value(&SurfacePoint::inside(at));
         let rest = |gradient: &Matrix<D>| gradient.column(0).dot(&force);
         let energy = 0.5 * state.stress.dot(&state.gradient);
-        let mut found = [0.0; 4];
-        found[3] = -(energy * radial[0] - flux(&state.stress, &state.gradient, &radial)) * slope;
-        found[3] += q * (along(&state, &state.stress, &state.gradient) - rest(&state.gradient));
-        for mode in 0..D {
-            let gradient = auxiliary(mode, &solid.material, p.r, p.theta);
+        let mut found = Integrals::default();
+        found[4] = -(energy * radial[0] - flux(&state.stress, &state.gradient, &radial)) * slope;
+        found[4] += q * (along(&state, &state.stress, &state.gradient) - rest(&state.gradient));
+        for (mode, field) in Auxiliary::all::<D>() {
+            let gradient = field.gradient(&solid.material, p.r, p.theta);
             let stress = stress(&solid.material, &gradient);
             let mixed = flux(&state.stress, &gradient, &radial) + flux(&stress, &state.gradient, &radial);
             found[mode] = -(state.stress.dot(&gradient) * radial[0] - mixed) * slope;
@@ -193,23 +255,21 @@ impl<const D: usize> Disc<'_, D> {
     /// What tractions on the faces add.
     fn face_terms(&self, radius: f64) -> Result<Integrals> {
         let mut buffer = Default::default();
-        let mut sum = [0.0; 4];
+        let mut sum = Integrals::default();
         let solid = &self.collocation.solid;
         for side in [1.0, -1.0] {
             let normal = self.frame.normal * -side;
-            for (x, weight) in gauss_legendre(FACE) {
-                // r = s² takes the root out of the auxiliary fields.
-                let s = x * radius.sqrt();
-                let (r, weight) = (s * s, 2.0 * weight * s * radius.sqrt());
+            for (r, weight) in face_points(radius) {
                 let q = ((radius - r) / ((1.0 - PLATEAU) * radius)).min(1.0);
                 let position = self.frame.position - self.frame.ahead * r;
                 let sight = position - normal * (OFF * radius);
                 let traction = solid.faces[self.crack].value(&SurfacePoint { position, normal, sight });
                 let traction = self.axes.transpose() * traction * (weight * q);
                 let state = self.state(position, sight, &mut buffer)?;
-                sum[3] -= traction.dot(&state.gradient.column(0));
-                for mode in 0..D {
-                    sum[mode] -= traction.dot(&auxiliary::<D>(mode, &solid.material, r, side * PI).column(0));
+                sum[4] -= traction.dot(&state.gradient.column(0));
+                for (mode, field) in Auxiliary::all::<D>() {
+                    let gradient = field.gradient::<D>(&solid.material, r, side * PI);
+                    sum[mode] -= traction.dot(&gradient.column(0));
                 }
             }
         }
@@ -240,19 +300,6 @@ fn stress<const D: usize>(material: &Elasticity, gradient: &Matrix<D>) -> Matrix
         + Matrix::from_diagonal_element(material.lame() * gradient.trace())
 }
 
-/// Displacement gradient of a unit mode at a straight front.
-fn auxiliary<const D: usize>(mode: usize, material: &Elasticity, r: f64, theta: f64) -> Matrix<D> {
-    let in_plane = |mode| {
-        let (_, gradient) = tip_field(mode, material, r, theta);
-        Matrix::from_fn(|i, j| if i < 2 && j < 2 { gradient[(i, j)] } else { 0.0 })
-    };
-    match mode {
-        0 => in_plane(TipMode::Opening),
-        1 => in_plane(TipMode::Sliding),
-        _ => axis::<D>(D - 1) * out_of_plane_gradient::<D>(material, r, theta).transpose(),
-    }
-}
-
 fn is_zero<const D: usize>(field: &VectorField<D>) -> bool {
     match field {
         VectorField::Constant(v) => v.norm() == 0.0,
@@ -260,15 +307,37 @@ fn is_zero<const D: usize>(field: &VectorField<D>) -> bool {
     }
 }
 
-/// Gauss points between two radii, in both halves of the disc.
-fn ring(from: f64, to: f64) -> Vec<DiscPoint> {
+/// Gauss points where `q` falls, between two radii.
+fn slope_points(from: f64, to: f64) -> Vec<DiscPoint> {
+    let rule = gauss_legendre(RADIAL).into_iter().map(|(x, w)| (from + x * (to - from), w * (to - from)));
+    around(rule)
+}
+
+/// Gauss points where `q` is one, up to a radius; `r = s²` takes roots out of the integrands.
+fn plateau_points(to: f64) -> Vec<DiscPoint> {
+    around(gauss_legendre(RADIAL).into_iter().map(|(x, w)| (to * x * x, 2.0 * to * x * w)))
+}
+
+/// Gauss points along a face up to a radius.
+fn face_points(radius: f64) -> impl Iterator<Item = (f64, f64)> {
+    let ends = [0.0, (PLATEAU * radius).sqrt(), radius.sqrt()];
+    [0, 1].into_iter().flat_map(move |part| {
+        let (from, length) = (ends[part], ends[part + 1] - ends[part]);
+        gauss_legendre(FACE).into_iter().map(move |(x, weight)| {
+            // r = s² takes the root out of the auxiliary fields.
+            let s = from + x * length;
+            (s * s, 2.0 * weight * s * length)
+        })
+    })
+}
+
+/// Points at radii with their weights, in both halves of the disc.
+fn around(radii: impl Iterator<Item = (f64, f64)>) -> Vec<DiscPoint> {
     let mut points = vec![];
-    for (x, wx) in gauss_legendre(RADIAL) {
-        let r = from + x * (to - from);
+    for (r, weight) in radii {
         for (y, wy) in gauss_legendre(ANGULAR) {
             for middle in [0.5 * PI, -0.5 * PI] {
-                let weight = wx * (to - from) * wy * PI * r;
-                points.push(DiscPoint { r, theta: middle + PI * (y - 0.5), weight });
+                points.push(DiscPoint { r, theta: middle + PI * (y - 0.5), weight: weight * wy * PI * r });
             }
         }
     }

@@ -7,6 +7,7 @@ pub mod domain;
 pub mod field;
 pub mod load;
 pub mod solid;
+pub mod solid_model;
 pub mod support;
 pub mod units;
 
@@ -21,6 +22,7 @@ pub use load::{BodyForce, BoundaryLoad, CrackFaceLoad, PointLoad, TractionValue}
 pub use solid::{
     DirectedDisplacement, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField, VectorFunction,
 };
+pub use solid_model::SolidModel;
 use std::sync::Arc;
 pub use support::{BoundarySupport, Direction, PointSupport, PrescribedValue, RigidMotion, Spring};
 pub use units::UnitNames;
@@ -36,7 +38,11 @@ pub struct Model {
     pub material: Elasticity,
     /// Thickness [length]; stress intensity factors do not depend on it.
     pub thickness: f64,
-    /// Cracks; they may touch the boundary, but not yet one another.
+    /// Whether the thickness is that of the part, not a unit of it.
+    pub thickness_is_given: bool,
+    /// Yield stress, to judge whether the body is linear elastic [stress].
+    pub yield_stress: Option<f64>,
+    /// Cracks; they may touch the boundary and one another.
     pub cracks: Vec<CrackPath>,
     /// Tractions on boundary parts.
     pub loads: Vec<BoundaryLoad>,
@@ -69,6 +75,8 @@ impl Model {
             domain,
             material,
             thickness: 1.0,
+            thickness_is_given: false,
+            yield_stress: None,
             cracks: vec![],
             loads: vec![],
             crack_face_loads: vec![],

@@ -14,6 +14,7 @@ pub mod generation;
 mod ligaments;
 mod scaling;
 pub mod settings;
+pub mod solid;
 mod source_tree;
 pub mod spacing;
 pub mod support;

@@ -1,7 +1,7 @@
 //! A tree over what asks for a spacing: the least one at a point without asking all.
 
 use crate::geometry::aabb::Aabb;
-use crate::math::Vector2;
+use crate::math::Vector;
 
 /// Sources in a leaf.
 const LEAF: usize = 4;
@@ -10,14 +10,14 @@ const ROUNDING: f64 = 1e-12;
 
 /// Sources in a binary tree, split at the median of the longest side.
 #[derive(Clone, Debug)]
-pub(super) struct SourceTree {
-    branches: Vec<Branch>,
+pub(super) struct SourceTree<const D: usize> {
+    branches: Vec<Branch<D>>,
     order: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Branch {
-    bounds: Aabb<2>,
+struct Branch<const D: usize> {
+    bounds: Aabb<D>,
     /// Least spacing of all sources below.
     least: f64,
     /// First source of a leaf, or the index of the second child (the first one follows its parent).
@@ -26,9 +26,9 @@ struct Branch {
     count: u32,
 }
 
-impl SourceTree {
+impl<const D: usize> SourceTree<D> {
     /// Builds the tree over the box and the spacing of each source.
-    pub fn new(boxes: &[Aabb<2>], spacings: &[f64]) -> Self {
+    pub fn new(boxes: &[Aabb<D>], spacings: &[f64]) -> Self {
         let mut tree = Self { branches: vec![], order: (0..boxes.len() as u32).collect() };
         let mut order = std::mem::take(&mut tree.order);
         if !order.is_empty() {
@@ -38,7 +38,7 @@ impl SourceTree {
         tree
     }
 
-    fn build(&mut self, boxes: &[Aabb<2>], spacings: &[f64], items: &mut [u32], offset: usize) {
+    fn build(&mut self, boxes: &[Aabb<D>], spacings: &[f64], items: &mut [u32], offset: usize) {
         let bounds = items.iter().fold(Aabb::empty(), |b, &i| b.union(boxes[i as usize]));
         let least = items.iter().map(|&i| spacings[i as usize]).fold(f64::INFINITY, f64::min);
         let index = self.branches.len();
@@ -64,14 +64,14 @@ impl SourceTree {
     ///
     /// - `growth`: slope of the spacing with the distance from a source
     /// - `value`: spacing that a source asks for at the point [length]
-    pub fn least(&self, p: Vector2, growth: f64, start: f64, value: impl Fn(u32) -> f64) -> f64 {
+    pub fn least(&self, p: Vector<D>, growth: f64, start: f64, value: impl Fn(u32) -> f64) -> f64 {
         let mut best = start;
         if self.branches.is_empty() {
             return best;
         }
         let bound = |index: u32| {
             let branch = &self.branches[index as usize];
-            let outside = (branch.bounds.lower - p).sup(&(p - branch.bounds.upper)).sup(&Vector2::zeros());
+            let outside = (branch.bounds.lower - p).sup(&(p - branch.bounds.upper)).sup(&Vector::zeros());
             (branch.least + growth * outside.norm()) * (1.0 - ROUNDING)
         };
         let mut stack = [(0u32, 0.0); 64];
@@ -102,6 +102,7 @@ impl SourceTree {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vector2;
     use proptest::prelude::*;
 
     proptest! {

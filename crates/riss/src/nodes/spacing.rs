@@ -40,7 +40,7 @@ pub(super) const GROWTH: f64 = 0.2;
 pub struct SpacingField {
     sources: Vec<Source>,
     /// Over all sources, once they are complete.
-    tree: Option<SourceTree>,
+    tree: Option<SourceTree<2>>,
     largest: f64,
     growth: f64,
     given: Option<GivenNodes>,

@@ -3,7 +3,8 @@
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
-//! [`convergence`], [`run_table`] (of several runs), [`whole_file`].
+//! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
+//! [`solid_report`], [`solid_picture`].
 
 mod color_map;
 pub mod comparison;
@@ -19,6 +20,10 @@ pub mod results;
 pub mod run_table;
 pub mod run_writer;
 pub mod shape_picture;
+pub mod solid_files;
+pub mod solid_picture;
+pub mod solid_report;
+pub mod solid_results;
 mod svg;
 mod vtk;
 pub mod whole_file;
@@ -31,6 +36,9 @@ pub use report::{REPORT_FILE, RunSource, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;
+pub use solid_files::{write_solid_cloud, write_solid_results};
+pub use solid_picture::solid_picture;
+pub use solid_results::{SolidResults, solid_results_schema};
 
 use crate::analysis::StaticResult;
 use crate::model::UnitNames;

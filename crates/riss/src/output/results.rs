@@ -229,7 +229,7 @@ impl StepResults {
             nodes: (result.n_nodes > 0).then_some(result.n_nodes),
             strain_energy: finite(result.strain_energy),
             stage_time_s: sum_by_stage(stage_time_s),
-            warnings: result.warnings.iter().map(|w| w.message.clone()).collect(),
+            warnings: result.warnings.iter().map(ToString::to_string).collect(),
             refinements: result.refinements.iter().map(RefinementResults::new).collect(),
             cracks: step.cracks.iter().map(CrackResults::new).collect(),
             reactions: step.reactions.iter().map(|(part, force)| (part.clone(), finite_pair(*force))).collect(),

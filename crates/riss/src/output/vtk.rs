@@ -3,7 +3,7 @@
 //! Written here because the crate `vtkio` 0.6 brings a C compiler (lzma) and outdated parsers for what are 150 lines.
 //! Arrays stand inline as Base64 over zlib, so that files are valid XML and every reader takes them.
 
-use crate::math::{Matrix2, Vector2};
+use crate::math::{Matrix, Matrix2, Vector2, Vector3};
 use std::fmt::Write;
 
 /// Bytes compressed at once.
@@ -53,6 +53,26 @@ impl Array {
         Self::floats(name, &["xx", "yy", "zz", "xy", "yz", "xz"], components)
     }
 
+    /// Vectors in space.
+    pub fn spatial_vectors(name: &'static str, values: impl IntoIterator<Item = Vector3>) -> Self {
+        Self::floats(name, &["x", "y", "z"], values.into_iter().flat_map(|v| [v.x, v.y, v.z]))
+    }
+
+    /// Symmetric tensors in space.
+    pub fn spatial_tensors(name: &'static str, values: impl IntoIterator<Item = Matrix<3>>) -> Self {
+        let upper = |m: Matrix<3>| [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].map(|ij| m[ij]);
+        Self::floats(name, &["xx", "yy", "zz", "xy", "yz", "xz"], values.into_iter().flat_map(upper))
+    }
+
+    /// Three numbers at each place.
+    pub fn triples(
+        name: &'static str,
+        components: &'static [&'static str; 3],
+        values: impl IntoIterator<Item = [f64; 3]>,
+    ) -> Self {
+        Self::floats(name, components, values.into_iter().flatten())
+    }
+
     pub fn integers(name: &'static str, values: impl IntoIterator<Item = i64>) -> Self {
         let bytes = values.into_iter().flat_map(i64::to_le_bytes).collect();
         Self { name, number: "Int64", components: &[""], bytes }
@@ -78,10 +98,26 @@ impl Array {
 
 /// An unstructured grid in the plane z = 0 (`.vtu`).
 pub(super) fn grid(positions: &[Vector2], cells: &Cells, point_arrays: &[Array], cell_arrays: &[Array]) -> Vec<u8> {
+    let points = Array::vectors("Points", positions.iter().copied());
+    grid_of(&points, positions.len(), cells, point_arrays, cell_arrays)
+}
+
+/// An unstructured grid in space (`.vtu`).
+pub(super) fn spatial_grid(
+    positions: &[Vector3],
+    cells: &Cells,
+    point_arrays: &[Array],
+    cell_arrays: &[Array],
+) -> Vec<u8> {
+    let points = Array::spatial_vectors("Points", positions.iter().copied());
+    grid_of(&points, positions.len(), cells, point_arrays, cell_arrays)
+}
+
+fn grid_of(points: &Array, n_points: usize, cells: &Cells, point_arrays: &[Array], cell_arrays: &[Array]) -> Vec<u8> {
     let mut text = header("UnstructuredGrid", " header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"");
-    let (n_points, n_cells) = (positions.len(), cells.sizes.len());
+    let n_cells = cells.sizes.len();
     let _ = write!(text, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">\n<Points>\n");
-    Array::vectors("Points", positions.iter().copied()).write(&mut text);
+    points.write(&mut text);
     text.push_str("</Points>\n<Cells>\n");
     Array::integers("connectivity", cells.points.iter().map(|&p| p.into())).write(&mut text);
     Array::integers("offsets", ends(&cells.sizes)).write(&mut text);

@@ -9,14 +9,18 @@ use super::collocation_settings::CollocationSettings;
 use super::node_conditions::{NodeConditions, Strong, StrongTerm};
 use crate::approximation::visible_nodes::ball_radius;
 use crate::approximation::{ConstrainedMls, EnrichedFront, FitBuffer, ShapeFunctions};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Opaque;
+use crate::material::PlaneState;
 use crate::math::{Matrix, Vector};
 use crate::model::Solid;
 use crate::nodes::cloud::{Cloud, Place};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Largest Poisson's ratio: above it the preconditioner was seen to fail, and errors of the strong form grow.
+pub const LARGEST_POISSON: f64 = 0.45;
 
 /// A solid with nodes, ready to be assembled.
 pub struct Collocation<const D: usize> {
@@ -80,16 +84,24 @@ impl<const D: usize> Collocation<D> {
     /// Writes the equations of all nodes.
     ///
     /// # Errors
-    /// [`crate::Error::PoorStencil`] with the first node whose neighbors do not determine its derivatives.
+    /// [`Error::PoorStencil`] with the first node whose neighbors do not determine its derivatives, and
+    /// [`Error::NearlyIncompressible`] above [`LARGEST_POISSON`] except in plane stress.
     pub fn assemble(&self) -> Result<CollocationSystem<D>> {
+        let material = &self.solid.material;
+        if material.plane == PlaneState::Strain && !(material.poisson <= LARGEST_POISSON) {
+            return Err(Error::NearlyIncompressible { poisson: material.poisson, allowed: LARGEST_POISSON });
+        }
         let n = self.cloud().len();
         let expected = self.approximation.support_size();
         let parts: Vec<Result<Part<D>>> = (0..n.div_ceil(CHUNK))
             .into_par_iter()
             .map_init(Scratch::default, |scratch, c| {
                 let nodes = c * CHUNK..((c + 1) * CHUNK).min(n);
-                let mut part =
-                    Part { rows: RowChunk::with_capacity(nodes.len() * expected), load: vec![], fixed: vec![] };
+                let mut part = Part {
+                    rows: RowChunk::with_capacity(nodes.len() * expected),
+                    load: Vec::with_capacity(nodes.len() * D),
+                    fixed: Vec::with_capacity(nodes.len()),
+                };
                 for node in nodes {
                     self.add_row(node as u32, scratch, &mut part)?;
                 }
@@ -121,13 +133,15 @@ impl<const D: usize> Collocation<D> {
     }
 
     fn add_row(&self, node: u32, scratch: &mut Scratch<D>, part: &mut Part<D>) -> Result<()> {
-        let Scratch { buffer, shape, entries } = scratch;
-        let conditions = NodeConditions::new(&self.solid, self.cloud(), node as usize, &self.settings);
+        let Scratch { buffer, shape, entries, conditions } = scratch;
+        conditions.look_up(&self.solid, self.cloud(), node as usize, &self.settings);
         let free = Matrix::identity() - conditions.fixed;
         entries.clear();
         entries.push((node, to_block(&conditions.fixed)));
         let mut load = conditions.displacement;
         let young = self.solid.material.young;
+        // All terms of a row have one scale, or their weights would not be those of their angles.
+        let mut spacing = None;
         for term in &conditions.terms {
             let radius = match term.equation {
                 Strong::Fit => self.approximation.at_front(node, term.sight, buffer, shape)?,
@@ -135,7 +149,7 @@ impl<const D: usize> Collocation<D> {
                     self.approximation.at_node(node, term.sight, buffer, shape)?
                 }
             };
-            let h = radius / ball_radius::<D>(shape.neighbors.len());
+            let h = *spacing.get_or_insert(radius / ball_radius::<D>(shape.neighbors.len()));
             let scale = match term.equation {
                 Strong::Equilibrium => h * h / young,
                 Strong::Traction { .. } => h / young,
@@ -195,6 +209,7 @@ struct Scratch<const D: usize> {
     buffer: FitBuffer<D>,
     shape: ShapeFunctions<D>,
     entries: Vec<(u32, Block<D>)>,
+    conditions: NodeConditions<D>,
 }
 
 #[inline]

@@ -1,21 +1,38 @@
 //! Choices of point collocation.
 
 use crate::approximation::ConstrainedMlsSettings;
+use crate::approximation::constrained_mls::REACH;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Point collocation: shape functions, corners, fronts and solver.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CollocationSettings {
     /// Constrained moving least squares.
     pub approximation: ConstrainedMlsSettings,
+    /// Distance from crack fronts up to which their functions are in the basis, over the spacing of nodes there; 0 for
+    /// none. Where a front bends it is up to a third less, to stay away from the center of the bend.
+    #[schemars(range(min = 0.0, max = 1000.0))]
+    pub front_reach: f64,
     /// Nodes on crack fronts.
     pub front_nodes: FrontNodes,
     /// Nodes at concave edges and corners.
     pub concave_corners: ConcaveCorners,
     /// Linear solver.
     pub solver: CollocationSolver,
+}
+
+impl Default for CollocationSettings {
+    fn default() -> Self {
+        Self {
+            approximation: ConstrainedMlsSettings::default(),
+            front_reach: REACH,
+            front_nodes: FrontNodes::default(),
+            concave_corners: ConcaveCorners::default(),
+            solver: CollocationSolver::default(),
+        }
+    }
 }
 
 /// What holds at nodes on crack fronts.

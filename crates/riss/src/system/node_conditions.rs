@@ -46,35 +46,41 @@ pub enum Strong<const D: usize> {
     },
 }
 
+impl<const D: usize> Default for NodeConditions<D> {
+    fn default() -> Self {
+        Self { fixed: Matrix::zeros(), displacement: Vector::zeros(), terms: vec![] }
+    }
+}
+
 impl<const D: usize> NodeConditions<D> {
-    /// Looks up what holds at a node.
-    pub fn new(solid: &Solid<D>, cloud: &Cloud<D>, node: usize, settings: &CollocationSettings) -> Self {
-        let mut this = Self { fixed: Matrix::zeros(), displacement: Vector::zeros(), terms: vec![] };
+    /// Looks up what holds at a node, in place of what is there.
+    pub fn look_up(&mut self, solid: &Solid<D>, cloud: &Cloud<D>, node: usize, settings: &CollocationSettings) {
+        (self.fixed, self.displacement) = (Matrix::zeros(), Vector::zeros());
+        self.terms.clear();
         let (position, sight) = (cloud.positions[node], cloud.sights[node]);
         let facets: &[Facet<D>] = match &cloud.places[node] {
             Place::Inside => &[],
             Place::Surface(facets) | Place::Front { facets, .. } => facets,
         };
         for facet in facets {
-            this.prescribe(solid, position, facet);
+            self.prescribe(solid, position, facet);
         }
-        if this.fixed.trace() > D as f64 - 0.5 {
-            return this;
+        if self.fixed.trace() > D as f64 - 0.5 {
+            return;
         }
         let is_front = matches!(cloud.places[node], Place::Front { .. });
         if facets.is_empty() || (is_front && settings.front_nodes == FrontNodes::Equilibrium) {
             let load = solid.body_force.value(&SurfacePoint::inside(position));
-            this.terms.push(StrongTerm { equation: Strong::Equilibrium, load, sight });
-            return this;
+            self.terms.push(StrongTerm { equation: Strong::Equilibrium, load, sight });
+            return;
         }
         if is_front && settings.front_nodes == FrontNodes::Fitted {
-            this.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
-            return this;
+            self.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
+            return;
         }
         let one_sided =
             is_front || (settings.concave_corners == ConcaveCorners::Averaged && is_concave(position, facets));
-        this.add_tractions(solid, position, sight, facets, one_sided);
-        this
+        self.add_tractions(solid, position, sight, facets, one_sided);
     }
 
     /// Fixes the directions of a facet that are not fixed yet.

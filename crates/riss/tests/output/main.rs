@@ -5,4 +5,5 @@ mod pictures;
 mod report;
 mod results;
 mod sample;
+mod solids;
 mod vtk;

@@ -39,6 +39,8 @@ pub fn model() -> Model {
         domain,
         material: sample::MATERIAL,
         thickness: 1.0,
+        thickness_is_given: false,
+        yield_stress: None,
         cracks: vec![
             crack("crack-1", &[(0.0, 1.0), (0.7, 1.0), (1.0, 1.3)], EndKind::Mouth),
             crack("b", &[(1.3, 1.9), (2.0, 1.7)], EndKind::Tip),

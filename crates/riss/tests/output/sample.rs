@@ -62,7 +62,7 @@ pub fn result(n: usize) -> StaticResult {
             .collect(),
         integration_points: vec![(Vector2::new(0.5, 0.25), 0.75), (Vector2::new(-0.5, 0.25), 0.5)],
         fields,
-        warnings: vec![Warning { message: "few nodes".into() }],
+        warnings: vec![Warning { key: None, message: "few nodes".into() }],
     }
 }
 

@@ -1,7 +1,8 @@
 //! Boxes with jittered nodes, whole or with a crack from one face to the middle.
 
+use riss::approximation::{FitBuffer, ShapeFunctions};
 use riss::geometry::obstacles::Opaque;
-use riss::math::{Vector, axis};
+use riss::math::{Matrix, Vector, axis};
 use riss::model::SurfacePoint;
 use riss::nodes::cloud::{Cloud, Facet, Place, Side, SurfaceId};
 use riss::system::Collocation;
@@ -161,4 +162,15 @@ pub fn displacement_error<const D: usize>(
         scale = scale.max(expected.norm());
     }
     error / scale
+}
+
+/// Stress of a solution at a point inside the body.
+pub fn stress<const D: usize>(collocation: &Collocation<D>, found: &[Vector<D>], at: Vector<D>) -> Matrix<D> {
+    let (mut buffer, mut shape) = (FitBuffer::default(), ShapeFunctions::default());
+    collocation.approximation.at_point(at, at, &mut buffer, &mut shape).unwrap();
+    let mut gradient = Matrix::<D>::zeros();
+    shape.neighbors.iter().zip(&shape.gradients).for_each(|(i, g)| gradient += found[*i as usize] * g.transpose());
+    let material = &collocation.solid.material;
+    (gradient + gradient.transpose()) * material.shear()
+        + Matrix::from_diagonal_element(material.lame() * gradient.trace())
 }

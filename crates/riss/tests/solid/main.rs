@@ -3,6 +3,8 @@
 mod boxes;
 mod cavity;
 mod convergence;
+mod front_conditions;
+mod front_integral;
 mod near_tip;
 mod patch;
 mod penny;

@@ -7,20 +7,20 @@ use riss::model::{DirectedDisplacement, RigidMotion, Solid, SolidDirection, Surf
 use riss::system::{Collocation, CollocationSettings, CollocationSolver};
 use std::sync::Arc;
 
-fn material() -> Elasticity {
+pub fn material() -> Elasticity {
     Elasticity { young: 3.0, poisson: 0.3, plane: PlaneState::Strain }
 }
 
 /// `u = a (d·x + c)^m` with its gradient and the body force that keeps it in equilibrium.
 #[derive(Clone, Copy)]
-struct Power<const D: usize> {
-    amplitude: Vector<D>,
-    direction: Vector<D>,
-    order: i32,
+pub struct Power<const D: usize> {
+    pub amplitude: Vector<D>,
+    pub direction: Vector<D>,
+    pub order: i32,
 }
 
 impl<const D: usize> Power<D> {
-    fn new(order: i32) -> Self {
+    pub fn new(order: i32) -> Self {
         let of = |v: [f64; 3]| Vector::<D>::from_fn(|d, _| v[d]);
         Self { amplitude: of([1.0, -0.7, 0.4]), direction: of([0.6, 0.5, -0.8]), order }
     }
@@ -29,11 +29,11 @@ impl<const D: usize> Power<D> {
         self.direction.dot(&x) + 0.3
     }
 
-    fn displacement(&self, x: Vector<D>) -> Vector<D> {
+    pub fn displacement(&self, x: Vector<D>) -> Vector<D> {
         self.amplitude * self.along(x).powi(self.order)
     }
 
-    fn stress(&self, x: Vector<D>) -> Matrix<D> {
+    pub fn stress(&self, x: Vector<D>) -> Matrix<D> {
         let slope = f64::from(self.order) * self.along(x).powi(self.order - 1);
         let gradient = self.amplitude * self.direction.transpose() * slope;
         let material = material();
@@ -41,7 +41,7 @@ impl<const D: usize> Power<D> {
             + Matrix::from_diagonal_element(material.lame() * gradient.trace())
     }
 
-    fn body_force(&self, x: Vector<D>) -> Vector<D> {
+    pub fn body_force(&self, x: Vector<D>) -> Vector<D> {
         if self.order < 2 {
             return Vector::zeros();
         }

@@ -2,7 +2,8 @@
 //!
 //! `K_I = 2 σ √(a/π)`; shear τ along x gives `K_II = 4 τ cos φ √(a/π) / (2 - ν)` and `K_III = (1 - ν) tan φ K_II`.
 //! The block is six radii to each side, which raises factors by about the cube of 1/6, 0.3 %. Eight nodes to the radius
-//! of the crack leave errors of 1 to 3 %.
+//! of the crack leave errors of 1 to 3 %; sixteen (83,625 nodes) bring them below 0.7 %, 1.9 % where K_III meets a plane of
+//! symmetry.
 
 use crate::boxes::{Random, push};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};

@@ -67,3 +67,12 @@ fn a_body_that_nothing_holds_is_refused() {
     let found = collocation.solve(&collocation.assemble().unwrap());
     assert!(matches!(found, Err(Error::FreeRigidMotion { .. })), "{:?}", found.map(|f| f.effort));
 }
+
+#[test]
+fn a_nearly_incompressible_body_is_refused() {
+    for solver in [CollocationSolver::Iterative, CollocationSolver::Direct] {
+        let error = cracked(0.46, solver, RigidMotion::Supported).assemble().unwrap_err();
+        assert!(matches!(error, Error::NearlyIncompressible { .. }), "{error}");
+        assert!(error.to_string().contains("0.46 is above 0.45"), "{error}");
+    }
+}

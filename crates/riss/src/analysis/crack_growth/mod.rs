@@ -11,6 +11,7 @@ pub mod settings;
 pub mod state;
 mod walls;
 
+use super::guard_rails::Rails;
 use super::linear_static::solve_step;
 use super::record::*;
 use super::settings::Settings;
@@ -55,6 +56,11 @@ pub fn crack_growth(
         // The state as it was: what a resumed run starts from.
         let beginning = state.clone();
         let plan = plan_step(&model, growth, increment, &mut result.step, &mut state);
+        let mut rails = Rails { said: &mut state.said, observer };
+        rails.inspect(&model, &mut result);
+        if beginning.step > 0 {
+            plan.tips.iter().for_each(|t| rails.turn(t.tip, t.angle, t.length, &mut result));
+        }
         if let Some(end) = result.step.end.clone() {
             let _ = observer.step(&result, Some(&beginning));
             return Ok(Some(end));
@@ -132,6 +138,7 @@ fn next_state(model: &Model, plan: &StepPlan, grown: &Grown, state: &GrowthState
         scale: state.scale,
         tips: grown.memory.clone(),
         reached_loops: state.reached_loops.clone(),
+        said: state.said.clone(),
     };
     if let Some(leader) = &mut next.leader {
         let made = plan.tips.iter().zip(&grown.made).find(|(t, _)| t.tip == leader.tip);

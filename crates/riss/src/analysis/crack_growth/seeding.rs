@@ -3,7 +3,8 @@
 use super::settings::{Seeding, SeedingTime};
 use crate::analysis::Settings;
 use crate::analysis::linear_static::{discretize, solve_once};
-use crate::analysis::record::{Observer, Warnings};
+use crate::analysis::record::Observer;
+use crate::analysis::warnings::Warnings;
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::{ShapeFunctions, Surroundings};
 use crate::crack::{CrackPath, EndKind};

@@ -30,6 +30,9 @@ pub struct GrowthState {
     pub tips: Vec<TipMemory>,
     /// Loops of the domain that cracks have reached and that may start new ones, in order.
     pub reached_loops: Vec<usize>,
+    /// Warnings that were said and are not said again.
+    #[serde(default)]
+    pub said: Vec<String>,
 }
 
 /// The tip that set the pace of an increment.

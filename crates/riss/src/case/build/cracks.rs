@@ -227,7 +227,11 @@ impl Builder<'_> {
             let along =
                 [0.25, 0.75].iter().all(|&s| on_boundary(self.vertices[k] * (1.0 - s) + self.vertices[k + 1] * s));
             if along {
-                report.error(self.vertex_key(k), "the crack runs along the boundary after this point");
+                report.error(
+                    self.vertex_key(k),
+                    "the crack runs along the boundary after this point; if that is a plane of symmetry, give the \
+                     whole body: K and J are then those of the whole crack",
+                );
                 return false;
             }
         }

@@ -12,7 +12,7 @@ mod method;
 mod outline;
 mod parts;
 mod plausibility;
-mod report;
+pub(super) mod report;
 mod settings;
 mod supports;
 
@@ -26,7 +26,6 @@ use crate::model::{Domain, Model, RigidMotion, UnitNames};
 use boundary::Boundary;
 use loads::Setting;
 use report::Report;
-use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The name that stands for every outer edge.
@@ -51,7 +50,7 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     let document = &*document;
     let mut faulty = super::check::check(document, &schema, problems);
     faulty.extend(values.faulty);
-    let mut file = deserialize(document, &faulty, problems)?;
+    let mut file: CaseFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
     let mut report = Report::new(document, problems);
     for remark in imported.iter().flat_map(|m| &m.remarks) {
         report.note(import::KEY, remark);
@@ -86,6 +85,8 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     let model = Model {
         title: file.title.clone().unwrap_or_else(|| default_title(path)),
         thickness: file.material.thickness.unwrap_or(1.0),
+        thickness_is_given: file.material.thickness.is_some(),
+        yield_stress: file.material.yield_stress,
         rigid_motion: match file.rigid_motion {
             schema::RigidMotion::Supported => RigidMotion::Supported,
             schema::RigidMotion::MeanIsZero => RigidMotion::MeanIsZero,
@@ -117,33 +118,17 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
 }
 
 /// Name of the file, or of its folder if the file is just called case.toml.
-fn default_title(path: &Path) -> String {
+pub(super) fn default_title(path: &Path) -> String {
     let stem = path.file_stem().map_or("case".into(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     if stem == "case" { folder.unwrap_or(stem) } else { stem }
 }
 
-/// The case without its faulty sections; placeholders stand for required ones.
-fn deserialize(document: &Document, faulty: &BTreeSet<String>, problems: &mut Vec<Problem>) -> Option<CaseFile> {
-    let mut table = document.to_toml();
-    for key in faulty {
-        table.remove(key);
-        let placeholder = match key.as_str() {
-            "material" => "young = 1\npoisson = 0.3\nplane = 'strain'",
-            "geometry" => "rectangle = { lower = [0, 0], upper = [1, 1] }",
-            _ => continue,
-        };
-        table.insert(key.clone(), toml::Value::Table(placeholder.parse().expect("placeholders are TOML")));
-    }
-    match table.try_into() {
-        Ok(file) => Some(file),
-        // The schema check has seen the same types, so this is a last resort.
-        Err(e) => {
-            problems.push(Problem::new("", e.to_string().trim_end().replace('\n', ", ")));
-            None
-        }
-    }
-}
+/// Stand for required sections that are faulty.
+const PLACEHOLDERS: [(&str, &str); 2] = [
+    ("material", "young = 1\npoisson = 0.3\nplane = 'strain'"),
+    ("geometry", "rectangle = { lower = [0, 0], upper = [1, 1] }"),
+];
 
 fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     report.positive("material.young", m.young);
@@ -152,6 +137,9 @@ fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     }
     if let Some(thickness) = m.thickness {
         report.positive("material.thickness", thickness);
+    }
+    if let Some(yield_stress) = m.yield_stress {
+        report.positive("material.yield_stress", yield_stress);
     }
     Elasticity { young: m.young, poisson: m.poisson, plane: m.plane }
 }

@@ -4,7 +4,7 @@ use crate::case::document::Document;
 use crate::case::problem::{MAX_PROBLEMS, Problem};
 
 /// Problems and notes, placed in the document by their key.
-pub(super) struct Report<'a> {
+pub(in crate::case) struct Report<'a> {
     pub document: &'a Document,
     pub problems: &'a mut Vec<Problem>,
     pub notes: Vec<Problem>,

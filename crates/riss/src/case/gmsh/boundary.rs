@@ -39,7 +39,8 @@ pub(in crate::case) fn build(mesh: &RawMesh) -> Result<GmshModel, GmshError> {
 
 fn n_corners(shape: Shape) -> usize {
     match shape {
-        Shape::Point => 1,
+        // Solids are refused before.
+        Shape::Point | Shape::Solid => 1,
         Shape::Line => 2,
         Shape::Triangle => 3,
         Shape::Quad => 4,

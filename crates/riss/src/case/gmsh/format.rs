@@ -13,8 +13,22 @@ pub(in crate::case) struct RawMesh {
     pub elements: Vec<RawElement>,
     /// Names of physical line groups, by tag.
     pub line_groups: BTreeMap<u32, String>,
+    /// Names of physical surface groups, by tag.
+    pub surface_groups: BTreeMap<u32, String>,
     /// Physical groups of each curve, by tag of the curve; only in version 4.1.
     pub curve_groups: HashMap<i32, Vec<u32>>,
+    /// The same of each surface.
+    pub entity_groups: HashMap<i32, Vec<u32>>,
+    /// What becomes of elements with a volume.
+    pub solids: Solids,
+}
+
+/// What becomes of elements with a volume.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::case) enum Solids {
+    #[default]
+    Refused,
+    LeftOut,
 }
 
 #[derive(Clone, Copy)]
@@ -27,7 +41,7 @@ pub(in crate::case) struct RawElement {
     pub shape: Shape,
     /// Corners, then midside nodes (that of corners 0 and 1 first), then the rest.
     pub nodes: Vec<u64>,
-    /// Physical groups, for lines only.
+    /// Physical groups, for lines and surfaces.
     pub groups: Vec<u32>,
     pub place: Place,
 }
@@ -38,10 +52,11 @@ pub(in crate::case) enum Shape {
     Line,
     Triangle,
     Quad,
+    Solid,
 }
 
 /// Shape and number of nodes of an element type of the format.
-pub(super) fn element_type(scanner: &Scanner, number: i32) -> Result<(Shape, usize), GmshError> {
+pub(super) fn element_type(scanner: &Scanner, solids: Solids, number: i32) -> Result<(Shape, usize), GmshError> {
     Ok(match number {
         1 => (Shape::Line, 2),
         2 => (Shape::Triangle, 3),
@@ -51,6 +66,11 @@ pub(super) fn element_type(scanner: &Scanner, number: i32) -> Result<(Shape, usi
         10 => (Shape::Quad, 9),
         15 => (Shape::Point, 1),
         16 => (Shape::Quad, 8),
+        4..=7 | 11..=14 | 17..=19 if solids == Solids::LeftOut => {
+            let sizes =
+                [(4, 4), (5, 8), (6, 6), (7, 5), (11, 10), (12, 27), (13, 18), (14, 14), (17, 20), (18, 15), (19, 13)];
+            (Shape::Solid, sizes.iter().find(|s| s.0 == number).map_or(0, |s| s.1))
+        }
         4..=7 | 11..=14 | 17..=19 => {
             return Err(scanner.error(format!("element type {number} is a solid; a plane mesh is needed")));
         }
@@ -68,9 +88,9 @@ enum Version {
     V4,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, GmshError> {
+pub(super) fn read(bytes: &[u8], solids: Solids) -> Result<RawMesh, GmshError> {
     let mut scanner = Scanner::new(bytes);
-    let mut mesh = RawMesh::default();
+    let mut mesh = RawMesh { solids, ..RawMesh::default() };
     if scanner.token("$MeshFormat")? != "$MeshFormat" {
         return Err(scanner.error("not a Gmsh mesh: it does not begin with $MeshFormat"));
     }
@@ -147,6 +167,9 @@ fn read_names(scanner: &mut Scanner, mesh: &mut RawMesh) -> Result<(), GmshError
         let name = name.ok_or_else(|| scanner.error(format!("the name of group {tag} is not in quotes")))?;
         if dimension == 1 {
             mesh.line_groups.insert(tag.unsigned_abs(), name.into());
+        }
+        if dimension == 2 {
+            mesh.surface_groups.insert(tag.unsigned_abs(), name.into());
         }
     }
     Ok(())

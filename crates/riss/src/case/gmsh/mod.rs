@@ -10,7 +10,9 @@ mod format;
 mod msh2;
 mod msh4;
 mod scanner;
+mod surface;
 
+use crate::geometry::surface::TriangleMesh;
 use crate::math::Vector2;
 pub(super) use boundary::build;
 pub(super) use format::{RawElement, RawMesh, RawNode, Shape};
@@ -146,5 +148,15 @@ fn in_section(section: &str) -> String {
 /// [`GmshError`] says where and what. No bytes make it panic, and none make it reserve more than a small multiple of
 /// their length.
 pub fn read_gmsh(bytes: &[u8]) -> Result<GmshModel, GmshError> {
-    boundary::build(&format::read(bytes)?)
+    boundary::build(&format::read(bytes, format::Solids::Refused)?)
+}
+
+/// Reads the surface elements of a `.msh` file of a model in space; lines and solids are ignored.
+///
+/// Each physical surface group is a part.
+///
+/// # Errors
+/// See [`read_gmsh`].
+pub fn read_gmsh_surface(bytes: &[u8]) -> Result<TriangleMesh, GmshError> {
+    surface::build(&format::read(bytes, format::Solids::LeftOut)?)
 }

@@ -27,7 +27,7 @@ pub(super) fn read_elements(scanner: &mut Scanner, mesh: &mut RawMesh) -> Result
     if scanner.order.is_none() {
         for _ in 0..count {
             read_tag(scanner, "an element tag")?;
-            let (shape, n_nodes) = read_type(scanner)?;
+            let (shape, n_nodes) = read_type(scanner, mesh)?;
             let n_tags = scanner.int("the number of element tags")?;
             read_element(scanner, mesh, shape, n_nodes, n_tags)?;
         }
@@ -35,7 +35,7 @@ pub(super) fn read_elements(scanner: &mut Scanner, mesh: &mut RawMesh) -> Result
     }
     // Binary elements come in groups of one type.
     while left > 0 {
-        let (shape, n_nodes) = read_type(scanner)?;
+        let (shape, n_nodes) = read_type(scanner, mesh)?;
         let size = scanner.int("the number of elements of one type")?;
         let n_tags = scanner.int("the number of element tags")?;
         let size = usize::try_from(size).ok().filter(|n| (1..=left).contains(n));
@@ -49,9 +49,9 @@ pub(super) fn read_elements(scanner: &mut Scanner, mesh: &mut RawMesh) -> Result
     Ok(())
 }
 
-fn read_type(scanner: &mut Scanner) -> Result<(Shape, usize), GmshError> {
+fn read_type(scanner: &mut Scanner, mesh: &RawMesh) -> Result<(Shape, usize), GmshError> {
     let number = scanner.int("an element type")?;
-    element_type(scanner, number)
+    element_type(scanner, mesh.solids, number)
 }
 
 fn read_tag(scanner: &mut Scanner, what: &str) -> Result<u64, GmshError> {
@@ -71,12 +71,12 @@ fn read_element(
     for k in 0..n_tags {
         // The first tag is the physical group, 0 for none; the others are the curve and partitions.
         let tag = scanner.int("an element tag")?;
-        if k == 0 && tag != 0 && shape == Shape::Line {
+        if k == 0 && tag != 0 && !matches!(shape, Shape::Point | Shape::Solid) {
             groups.push(tag.unsigned_abs());
         }
     }
     let nodes = (0..n_nodes).map(|_| read_tag(scanner, "a node tag")).collect::<Result<_, _>>()?;
-    if shape != Shape::Point {
+    if !matches!(shape, Shape::Point | Shape::Solid) {
         mesh.elements.push(RawElement { shape, nodes, groups, place });
     }
     Ok(())

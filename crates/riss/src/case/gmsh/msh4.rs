@@ -42,6 +42,8 @@ fn read_entity(scanner: &mut Scanner, mesh: &mut RawMesh, dimension: usize) -> R
     }
     if dimension == 1 {
         mesh.curve_groups.insert(tag, groups);
+    } else if dimension == 2 {
+        mesh.entity_groups.insert(tag, groups);
     }
     Ok(())
 }
@@ -77,17 +79,21 @@ pub(super) fn read_elements(scanner: &mut Scanner, mesh: &mut RawMesh) -> Result
         let dimension = scanner.int("an entity dimension")?;
         let entity = scanner.int("an entity tag")?;
         let number = scanner.int("an element type")?;
-        let (shape, n_nodes) = element_type(scanner, number)?;
+        let (shape, n_nodes) = element_type(scanner, mesh.solids, number)?;
         let numbers = 1 + n_nodes as u64;
         let count = scanner.size("the number of elements of one entity")?;
         let count = scanner.fitting(count, "elements", 8 * numbers, numbers)?;
-        let groups = mesh.curve_groups.get(&entity).filter(|_| dimension == 1 && shape == Shape::Line);
+        let groups = match dimension {
+            1 if shape == Shape::Line => mesh.curve_groups.get(&entity),
+            2 => mesh.entity_groups.get(&entity),
+            _ => None,
+        };
         let groups = groups.cloned().unwrap_or_default();
         for _ in 0..count {
             scanner.size("an element tag")?;
             let place = scanner.place();
             let nodes = (0..n_nodes).map(|_| scanner.size("a node tag")).collect::<Result<_, _>>()?;
-            if shape != Shape::Point {
+            if !matches!(shape, Shape::Point | Shape::Solid) {
                 mesh.elements.push(RawElement { shape, nodes, groups: groups.clone(), place });
             }
         }

@@ -128,6 +128,9 @@ pub(in crate::case) struct Material {
     /// Thickness [length], positive; 1 if not given.
     #[serde(default)]
     pub thickness: Option<f64>,
+    /// Yield stress [stress], positive: with it, riss warns where linear elasticity or the plane state is doubtful.
+    #[serde(default)]
+    pub yield_stress: Option<f64>,
 }
 
 /// Placement of nodes.

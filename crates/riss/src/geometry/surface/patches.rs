@@ -19,8 +19,9 @@ pub struct Patches {
     is_sharp: Vec<[bool; 3]>,
     /// Smooth normals at the corners of each triangle.
     corner_normals: Vec<[Vector3; 3]>,
-    /// Curvature of each triangle with its neighbors, where the surface is hollow as seen along its normal [1/length].
-    hollowness: Vec<f64>,
+    /// Curvatures of each triangle with its neighbors, where the surface is hollow as seen along its normal, and
+    /// where it is so as seen against it [1/length].
+    hollowness: Vec<[f64; 2]>,
     chains: Vec<Chain>,
     corners: Vec<u32>,
 }
@@ -97,26 +98,27 @@ impl Patches {
         sum.try_normalize(0.0).unwrap_or(own)
     }
 
-    fn hollow(&self, surface: &Surface, t: u32) -> f64 {
+    fn hollow(&self, surface: &Surface, t: u32) -> [f64; 2] {
         let corners = surface.corners(t);
         let middle = corners.iter().sum::<Vector3>() / 3.0;
         let shape = &surface.parts[surface.part_of[t as usize] as usize].shape;
         let normal = surface.normals[t as usize];
         if *shape != Shape::Triangles {
-            return shape.hollowness(middle, normal);
+            return [shape.hollowness(middle, normal), shape.hollowness(middle, -normal)];
         }
-        let mut most = 0.0f64;
+        let mut most = [0.0f64; 2];
         for k in 0..3 {
             let Some(other) = surface.neighbors[t as usize][k] else { continue };
             let apart = surface.corners(other).iter().sum::<Vector3>() / 3.0 - middle;
-            if self.is_sharp[t as usize][k] || apart.dot(&normal) <= 0.0 {
+            if self.is_sharp[t as usize][k] {
                 continue;
             }
+            let way = usize::from(apart.dot(&normal) < 0.0);
             let cross = normal.cross(&surface.normals[other as usize]).norm();
             let angle = cross.atan2(normal.dot(&surface.normals[other as usize]));
             let edge = (corners[(k + 1) % 3] - corners[k]).norm();
             let height = |t: u32| area_vector(surface.corners(t)).norm() / edge;
-            most = most.max(2.0 * angle / (height(t) + height(other)));
+            most[way] = most[way].max(2.0 * angle / (height(t) + height(other)));
         }
         most
     }
@@ -218,7 +220,12 @@ impl Surface {
 
     /// Curvature around a triangle where the surface is hollow as seen along its normal, else zero [1/length].
     pub fn hollowness(&self, triangle: u32) -> f64 {
-        self.patches.hollowness[triangle as usize]
+        self.patches.hollowness[triangle as usize][0]
+    }
+
+    /// The same as seen against its normal.
+    pub fn bulge(&self, triangle: u32) -> f64 {
+        self.patches.hollowness[triangle as usize][1]
     }
 
     /// Unit normal at a point of a triangle: that of its shape, or smoothed over the triangles of its patch.

@@ -54,6 +54,37 @@ impl Surface {
         }
     }
 
+    /// Where on the surface a point lies: a corner within the tolerance, else an edge, else a triangle.
+    pub fn locate(&self, p: Vector3, tolerance: f64) -> Option<Foot> {
+        let mut best: Option<(usize, Foot)> = None;
+        self.tree.visit(&Aabb::around(p, Vector3::repeat(tolerance)), |t| {
+            let corners = self.corners(t);
+            let (mut position, mut feature) = closest(corners, p);
+            if (position - p).norm() > tolerance {
+                return;
+            }
+            for k in 0..3 {
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                let on_edge = a + (b - a) * ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+                if feature == Feature::Face && (on_edge - p).norm() <= tolerance {
+                    (position, feature) = (on_edge, Feature::Edge(k));
+                }
+            }
+            if let Some(k) = (0..3).find(|k| (corners[*k] - p).norm() <= tolerance) {
+                (position, feature) = (corners[k], Feature::Corner(k));
+            }
+            let rank = match feature {
+                Feature::Corner(_) => 0,
+                Feature::Edge(_) => 1,
+                Feature::Face => 2,
+            };
+            if best.is_none_or(|(r, foot)| (rank, t) < (r, foot.triangle)) {
+                best = Some((rank, Foot { triangle: t, feature, position, distance: (position - p).norm() }));
+            }
+        });
+        best.map(|(_, foot)| foot)
+    }
+
     /// Least box around the surface.
     pub fn bounds(&self) -> Aabb<3> {
         self.bounds

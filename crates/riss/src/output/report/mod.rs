@@ -10,6 +10,8 @@ mod thinning;
 use super::color_map::VIRIDIS;
 use super::results::Results;
 use super::run_writer::read_results;
+use super::solid_files::read_solid_results;
+use super::solid_report::solid_report;
 use super::whole_file::write_whole;
 use crate::analysis::Fields;
 use serde::{Deserialize, Serialize};
@@ -73,7 +75,10 @@ pub struct RunSource {
 /// # Errors
 /// What the system says; `InvalidData` if the results there are none of ours.
 pub fn write_report(dir: &Path) -> io::Result<PathBuf> {
-    let page = report(dir, &read_results(dir)?)?;
+    let page = match read_solid_results(dir) {
+        Some(results) => solid_report(&results),
+        None => report(dir, &read_results(dir)?)?,
+    };
     let path = dir.join(REPORT_FILE);
     write_whole(&path, page.as_bytes())?;
     Ok(path)
@@ -190,7 +195,8 @@ fn push_json(page: &mut String, json: &str) {
     page.push_str(rest);
 }
 
-fn html(text: &str) -> String {
+/// Text that stands for itself in a page.
+pub(super) fn html(text: &str) -> String {
     let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
     escaped.replace('\u{2028}', "&#x2028;").replace('\u{2029}', "&#x2029;")
 }

@@ -1,0 +1,291 @@
+//! Static analysis of a cracked solid by point collocation [C3D].
+
+use super::record::{Observer, Stage};
+use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
+use crate::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
+use crate::crack::{CrackFront, FrontPoint};
+use crate::error::Result;
+use crate::fracture::{FrontFactors, front_integrals};
+use crate::geometry::obstacles::{Opaque, OpaqueTriangles};
+use crate::math::Matrix;
+use crate::model::SolidModel;
+use crate::nodes::cloud::Cloud;
+use crate::nodes::solid::{FacePair, NodesOnFronts, SolidCloud, SolidSpacing, generate_solid, solid_obstacles};
+use crate::system::{Collocation, CollocationSettings};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Radii of the discs around a front point, over the largest.
+const DISCS: [f64; 3] = [0.5, 0.75, 1.0];
+/// Largest disc over the spacing at the front, and the smallest that is of use.
+const LARGEST_DISC: f64 = 8.0;
+const SMALLEST_DISC: f64 = 2.0;
+/// Reach of the functions of a front over its least radius of curvature, and the least share of what is asked for.
+const BEND: f64 = 0.6;
+const LEAST_REACH: f64 = 2.0 / 3.0;
+/// Directions in which a disc is probed.
+const PROBES: usize = 24;
+/// Share of a turn on each side of the crack that is not probed.
+const BESIDE_CRACK: f64 = 0.02;
+
+/// Numerical choices for a solid.
+#[derive(Clone, Debug)]
+pub struct SolidSettings {
+    /// Distance of nodes.
+    pub spacing: SolidSpacing,
+    /// Whether nodes stand on fronts.
+    pub nodes_on_fronts: NodesOnFronts,
+    /// Shape functions, corners and solver.
+    pub collocation: CollocationSettings,
+    /// Number of points at which each front is evaluated.
+    pub points_on_front: usize,
+}
+
+/// Places the nodes of a solid.
+///
+/// # Errors
+/// [`crate::Error::NodeGeneration`] if there would be too many.
+pub fn solid_nodes(model: &SolidModel, settings: &SolidSettings) -> Result<SolidCloud> {
+    generate_solid(&model.body, &model.cracks, &settings.spacing, settings.nodes_on_fronts)
+}
+
+/// The equations of a solid on its nodes, ready to be assembled; `obstacles` hide nodes from one another.
+pub fn solid_collocation(
+    model: &SolidModel,
+    nodes: &SolidCloud,
+    obstacles: Arc<OpaqueTriangles>,
+    settings: &SolidSettings,
+) -> Collocation<3> {
+    let fronts = model.cracks.iter().flat_map(|c| &c.fronts).map(|f| enriched(f, settings)).collect();
+    let obstacles = obstacles as Arc<dyn Opaque<3> + Send>;
+    Collocation::new(model.solid.clone(), &nodes.cloud, obstacles, fronts, settings.collocation)
+}
+
+/// Solves a cracked solid.
+///
+/// # Errors
+/// Those of node generation, shape functions and solver.
+pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut dyn Observer) -> Result<SolidResult> {
+    observer.stage(Stage::Nodes);
+    let nodes = solid_nodes(model, settings)?;
+    let obstacles = Arc::new(solid_obstacles(&model.body, &model.cracks));
+    observer.stage(Stage::Discretization);
+    let collocation = solid_collocation(model, &nodes, obstacles.clone(), settings);
+    observer.stage(Stage::Assembly);
+    let system = collocation.assemble()?;
+    observer.stage(Stage::Solve);
+    let solution = collocation.solve(&system)?;
+    drop(system);
+    observer.stage(Stage::Fracture);
+    let mut records = vec![];
+    for (crack, surface) in model.cracks.iter().enumerate() {
+        for front in &surface.fronts {
+            let points = stations(front, settings.points_on_front);
+            let evaluate = |p: &FrontPoint| {
+                let h = settings.spacing.at(p.position);
+                let largest = free_disc(model, &obstacles, crack, p, h);
+                let factors = match largest {
+                    None => None,
+                    Some(r) => {
+                        let radii = DISCS.map(|share| share * r);
+                        let frame = frame(p);
+                        Some(FrontFactors::of(&front_integrals(
+                            &collocation,
+                            &solution.displacements,
+                            &frame,
+                            crack,
+                            &radii,
+                        )?))
+                    }
+                };
+                Ok(FrontPointRecord { point: *p, factors, radius: largest })
+            };
+            let points = points.iter().map(evaluate).collect::<Result<Vec<_>>>()?;
+            records.push(FrontRecord { crack, is_closed: front.is_closed, length: front.length, points });
+        }
+    }
+    observer.stage(Stage::Fields);
+    let gradients = collocation.gradients(&solution.displacements)?;
+    let material = model.solid.material;
+    let stress = |g: &Matrix<3>| {
+        (g + g.transpose()) * material.shear() + Matrix::from_diagonal_element(material.lame() * g.trace())
+    };
+    let cloud: Cloud<3> = collocation.cloud().clone();
+    let pairs = renumbered(&nodes.pairs, &collocation.origins, nodes.cloud.len());
+    let mut result = SolidResult {
+        n_nodes: cloud.len(),
+        stresses: gradients.iter().map(stress).collect(),
+        displacements: solution.displacements,
+        cloud,
+        pairs,
+        opened_cracks: vec![],
+        fronts: records,
+        effort: solution.effort,
+    };
+    result.opened_cracks = (0..model.cracks.len()).map(|c| result.opened_crack(&model.cracks[c], c)).collect();
+    Ok(result)
+}
+
+/// A front with its axes, for the functions of the front near it.
+fn enriched(front: &CrackFront, settings: &SolidSettings) -> EnrichedFront<3> {
+    let ends = if front.is_closed { FrontEnds::Closed } else { FrontEnds::Open };
+    let least = front.points.iter().map(|p| settings.spacing.at(p.position)).fold(f64::INFINITY, f64::min);
+    let line = FrontLine::new(front.points.iter().map(frame).collect(), ends);
+    let wanted = settings.collocation.front_reach * least;
+    // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
+    let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    EnrichedFront { line, reach: wanted.min((BEND / bend).max(LEAST_REACH * wanted)) }
+}
+
+fn frame(p: &FrontPoint) -> FrontFrame<3> {
+    FrontFrame { position: p.position, ahead: p.ahead, normal: p.normal, curvature: p.curvature }
+}
+
+/// Where a front is evaluated: evenly along it, half a step from its ends.
+fn stations(front: &CrackFront, n: usize) -> Vec<FrontPoint> {
+    let offset = if front.is_closed { 0.0 } else { 0.5 };
+    (0..n).map(|k| front.at(front.length * (k as f64 + offset) / n as f64)).collect()
+}
+
+/// Radius of the largest disc around a front point that lies in the body with nothing but its own crack in it, up to
+/// what is of use for the spacing `h`; none if that is too small.
+fn free_disc(model: &SolidModel, obstacles: &OpaqueTriangles, crack: usize, p: &FrontPoint, h: f64) -> Option<f64> {
+    let is_free = |r: f64| {
+        let at = |k: usize| {
+            let share = k as f64 / (PROBES - 1) as f64;
+            let theta = 2.0 * PI * (share - 0.5) * (1.0 - 2.0 * BESIDE_CRACK);
+            p.position + (p.ahead * theta.cos() + p.normal * theta.sin()) * r
+        };
+        let inside = (0..PROBES).all(|k| model.body.contains(at(k)));
+        let apart = (1..PROBES).all(|k| obstacles.visible(at(k - 1), at(k)));
+        let behind = p.position - p.ahead * r;
+        inside && apart && model.cracks[crack].surface.closest_within(behind, 0.01 * r).is_some()
+    };
+    let mut r = LARGEST_DISC * h;
+    while r >= SMALLEST_DISC * h {
+        if [1.0, 0.75, 0.5, 0.25].iter().all(|share| is_free(share * r)) {
+            return Some(r);
+        }
+        r *= 0.9;
+    }
+    None
+}
+
+/// Pairs in the order of the unknowns.
+fn renumbered(pairs: &[FacePair], origins: &[u32], n: usize) -> Vec<FacePair> {
+    let mut place = vec![u32::MAX; n];
+    origins.iter().enumerate().for_each(|(k, i)| place[*i as usize] = k as u32);
+    pairs.iter().map(|p| FacePair { crack: p.crack, nodes: p.nodes.map(|i| place[i as usize]) }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::record::Silent;
+    use super::*;
+    use crate::case::AnyCase;
+
+    fn solve(text: &str) -> (SolidModel, SolidResult) {
+        let case = AnyCase::parse(text, "case.toml".as_ref(), &[]).map_err(|e| e.to_string()).unwrap();
+        let AnyCase::Solid(case) = case else { panic!() };
+        let result = solid_static(&case.model, &case.settings, &mut Silent).unwrap();
+        (case.model, result)
+    }
+
+    /// A uniform stress is met at every node, whatever stands around it: nothing but linear displacement.
+    fn check_uniform(body: &str, stress: Matrix<3>) {
+        let s = |i: usize, j: usize| stress[(i, j)];
+        let text = format!(
+            "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = 1000, poisson = 0.3 }}\n\
+             remote_stress = {{ xx = {}, yy = {}, zz = {}, xy = {}, yz = {}, xz = {} }}\n{body}",
+            s(0, 0),
+            s(1, 1),
+            s(2, 2),
+            s(0, 1),
+            s(1, 2),
+            s(0, 2)
+        );
+        let (_, result) = solve(&text);
+        for (found, place) in result.stresses.iter().zip(&result.cloud.positions) {
+            assert!((found - stress).norm() < 1e-5 * stress.norm(), "{found} at {place}");
+        }
+        for opened in &result.opened_cracks {
+            assert!(opened.openings.iter().all(|o| o.norm() < 1e-8) && !opened.triangles.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_box_under_uniform_stress() {
+        let stress = Matrix::<3>::new(1.0, 0.3, -0.2, 0.3, 2.0, 0.5, -0.2, 0.5, -1.0);
+        check_uniform("geometry.box = { lower = [0, 0, 0], upper = [2, 1, 1] }\nnodes.spacing = 0.25", stress);
+    }
+
+    #[test]
+    fn a_shaft_under_tension() {
+        let shaft = "geometry.cylinder = { from = [0, 0, -1], to = [0, 0, 1], radius = 0.8 }\nnodes.spacing = 0.3";
+        check_uniform(shaft, Matrix::<3>::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0));
+    }
+
+    /// Cracks along the tension are not felt.
+    #[test]
+    fn cracks_along_the_tension() {
+        let body = "geometry.box = { lower = [0, 0, 0], upper = [2, 1, 1] }\nnodes.spacing = 0.25\n";
+        let tension = Matrix::<3>::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let through = "crack = [{ polygon = [[0, 0.5, 0], [1.05, 0.5, 0], [1.05, 0.5, 1], [0, 0.5, 1]] }]\nnodes.front_spacing = 0.2";
+        check_uniform(&format!("{body}{through}"), tension);
+        let inside = "crack = [{ disc = { center = [1, 0.5, 0.5], normal = [1, 0, 0], radius = 0.3 } }]\nnodes.front_spacing = 0.1";
+        check_uniform(&format!("{body}{inside}"), tension);
+        let half = "crack = [{ disc = { center = [1, 0, 0.5], normal = [1, 0, 0], radius = 0.4 } }]\nnodes.front_spacing = 0.12";
+        check_uniform(&format!("{body}{half}"), tension);
+    }
+
+    /// K_I = 2 σ √(a/π) [Sneddon1946], all around; the box adds less than half a percent.
+    #[test]
+    fn a_penny_shaped_crack_opens() {
+        let (model, result) = solve(
+            "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 1000, poisson = 0.3 }\n\
+             geometry.box = { lower = [-5, -5, -5], upper = [5, 5, 5] }\nremote_stress.zz = 1\n\
+             nodes = { spacing = 1.2, front_spacing = 0.09, growth = 0.14 }\nfracture.points = 6\n\
+             crack = [{ name = 'penny', disc = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 } }]",
+        );
+        assert_eq!((model.crack_names[0].as_str(), result.fronts.len()), ("penny", 1));
+        let exact = 2.0 / PI.sqrt();
+        for p in &result.fronts[0].points {
+            let factors = p.factors.expect("a disc fits").factors;
+            assert!((factors[0] / exact - 1.0).abs() < 0.02, "{factors:?}");
+            assert!(factors[1].abs() < 0.02 * exact && factors[2].abs() < 0.02 * exact, "{factors:?}");
+            // T = -(1/2 + ν) σ, see `theory/collocation` in the book.
+            let t = p.factors.expect("a disc fits").t_stress;
+            assert!((t + 0.8).abs() < 0.03, "{t}");
+        }
+        // Opening of the crack: 8 (1 - ν²) σ/(π E) √(a² - r²) [Sneddon1946].
+        let opened = &result.opened_cracks[0];
+        let largest = 8.0 * 0.91 / (PI * 1000.0);
+        for (p, gap) in opened.positions.iter().zip(&opened.gaps) {
+            let expected = largest * (1.0 - p.norm_squared()).max(0.0).sqrt();
+            assert!((gap - expected).abs() < 0.03 * largest, "{gap} {expected} at {p}");
+        }
+    }
+
+    /// Stress in the plane of a crack adds its part along x1 to T and leaves all else.
+    #[test]
+    fn stress_along_a_crack_shifts_t() {
+        let penny = |along: f64| {
+            let (_, result) = solve(&format!(
+                "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = 1000, poisson = 0.3 }}\n\
+                 geometry.box = {{ lower = [-2, -2, -2], upper = [2, 2, 2] }}\n\
+                 remote_stress = {{ zz = 1, xx = {along}, xy = {along} }}\n\
+                 nodes = {{ spacing = 0.8, front_spacing = 0.15, growth = 0.3 }}\nfracture.points = 5\n\
+                 crack = [{{ disc = {{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }} }}]"
+            ));
+            result.fronts[0].points.clone()
+        };
+        let (without, with) = (penny(0.0), penny(3.0));
+        for (a, b) in without.iter().zip(&with) {
+            let ahead = a.point.ahead;
+            let (a, b) = (a.factors.unwrap(), b.factors.unwrap());
+            let expected = 3.0 * (ahead.x * ahead.x + 2.0 * ahead.x * ahead.y);
+            assert!((b.t_stress - a.t_stress - expected).abs() < 1e-4, "{} {} {expected}", a.t_stress, b.t_stress);
+            assert!((0..3).all(|m| (b.factors[m] - a.factors[m]).abs() < 1e-5), "{a:?} {b:?}");
+        }
+    }
+}

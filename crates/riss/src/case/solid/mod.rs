@@ -1,0 +1,160 @@
+//! Cases of solids: `method = "collocation"`.
+//!
+//! Reading order: [`schema`] (what may be written), [`body`] and [`stl`] (geometry), [`cracks`], [`conditions`], [`nodes`].
+
+mod body;
+mod conditions;
+mod cracks;
+mod nodes;
+pub(super) mod schema;
+mod stl;
+#[cfg(test)]
+mod tests;
+
+use super::build::report::Report;
+use super::document::{Content, Document};
+use super::problem::{self, CaseErrors, Problem};
+use super::{Case, MAX_BYTES, read_text};
+use crate::analysis::SolidSettings;
+use crate::material::{Elasticity, PlaneState};
+use crate::model::{RigidMotion, Solid, SolidModel};
+use crate::system::collocation::LARGEST_POISSON;
+use schema::SolidFile;
+use std::path::{Path, PathBuf};
+
+/// A case of any method.
+#[derive(Clone, Debug)]
+pub enum AnyCase {
+    /// A body in the plane.
+    Plane(Box<Case>),
+    /// A solid.
+    Solid(Box<SolidCase>),
+}
+
+/// A valid case of a solid.
+#[derive(Clone, Debug)]
+pub struct SolidCase {
+    /// The problem.
+    pub model: SolidModel,
+    /// Numerical choices.
+    pub settings: SolidSettings,
+    /// The case file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// The overrides as they were given.
+    pub overrides: Vec<String>,
+    /// What the author should know, although the case is valid.
+    pub notes: Vec<Problem>,
+}
+
+impl AnyCase {
+    /// Reads a case file of any method; see [`Case::read`].
+    ///
+    /// # Errors
+    /// All problems of the case, in the order of the file.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
+        let Ok(text) = read_text(path, MAX_BYTES) else {
+            return Case::read(path, overrides).map(|c| Self::Plane(Box::new(c)));
+        };
+        Self::parse(&text, path, overrides)
+    }
+
+    /// Like [`AnyCase::read`] with the text at hand; files that it names are sought beside `path`.
+    ///
+    /// # Errors
+    /// All problems of the case, in the order of the file.
+    pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
+        let document = Document::parse(text, overrides, &mut vec![]);
+        let is_solid = |n: &super::document::Node| matches!(&n.content, Content::Text(t) if t == "collocation");
+        if document.root.get("method").is_some_and(is_solid) {
+            SolidCase::parse(text, path, overrides).map(|c| Self::Solid(Box::new(c)))
+        } else {
+            Case::parse(text, path, overrides).map(|c| Self::Plane(Box::new(c)))
+        }
+    }
+}
+
+impl SolidCase {
+    /// Reads the text of a case of a solid.
+    ///
+    /// # Errors
+    /// All problems of the case, in the order of the file.
+    pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
+        let mut problems = vec![];
+        let document = Document::parse(text, overrides, &mut problems);
+        let built = if problems.is_empty() { build(&document, path, &mut problems) } else { None };
+        match built {
+            Some((model, settings, notes)) if problems.is_empty() => {
+                Ok(Self { model, settings, path: path.into(), text: text.into(), overrides: overrides.to_vec(), notes })
+            }
+            _ => {
+                problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
+                Err(CaseErrors { file: path.into(), text: text.into(), overrides: overrides.to_vec(), problems })
+            }
+        }
+    }
+
+    /// Where a note stands, such as `case.toml:3:9`.
+    pub fn place(&self, note: &Problem) -> String {
+        problem::place(&self.path, &self.overrides, note)
+    }
+}
+
+/// The JSON Schema of the case file of a solid.
+pub fn solid_json_schema() -> serde_json::Value {
+    schemars::schema_for!(SolidFile).to_value()
+}
+
+fn build(
+    document: &Document,
+    path: &Path,
+    problems: &mut Vec<Problem>,
+) -> Option<(SolidModel, SolidSettings, Vec<Problem>)> {
+    let faulty = super::check::check(document, &solid_json_schema(), problems);
+    let file: SolidFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut report = Report::new(document, problems);
+    let material = material(&file, &mut report);
+    if ["geometry", "void", "part"].iter().any(|key| faulty.contains(*key)) {
+        return None;
+    }
+    let body = body::body(&file, folder, &mut report)?;
+    let cracks = cracks::cracks(&file, &body, folder, &mut report);
+    let conditions = conditions::conditions(&file, &body, &material, &mut report);
+    let settings = nodes::settings(&file, &body, &cracks.surfaces, &mut report);
+    if report.problems.is_empty() && !conditions.acts && !cracks.acts {
+        let mut problem = Problem::new("load", "nothing loads the body");
+        problem.suggest(
+            "add a [[load]], [remote_stress], [body_force], a prescribed displacement or a pressure in a crack",
+        );
+        report.problems.push(problem);
+    }
+    let rigid_motion = match file.rigid_motion {
+        super::schema::RigidMotion::Supported => RigidMotion::Supported,
+        super::schema::RigidMotion::MeanIsZero => RigidMotion::MeanIsZero,
+    };
+    let solid = Solid {
+        material,
+        parts: conditions.parts,
+        faces: cracks.faces,
+        body_force: conditions.body_force,
+        rigid_motion,
+    };
+    let title = file.title.clone().unwrap_or_else(|| super::build::default_title(path));
+    let model = SolidModel { title, body, crack_names: cracks.names, cracks: cracks.surfaces, solid };
+    Some((model, settings?, report.notes))
+}
+
+/// Stand for required sections that are faulty.
+const PLACEHOLDERS: [(&str, &str); 2] =
+    [("material", "young = 1\npoisson = 0.3"), ("geometry", "box = { lower = [0, 0, 0], upper = [1, 1, 1] }")];
+
+fn material(file: &SolidFile, report: &mut Report) -> Elasticity {
+    let m = &file.material;
+    report.positive("material.young", m.young);
+    if !(m.poisson > -1.0 && m.poisson <= LARGEST_POISSON) {
+        report.error("material.poisson", "out of range").allow(format!("above -1 and up to {LARGEST_POISSON}"));
+    }
+    Elasticity { young: m.young, poisson: m.poisson, plane: PlaneState::Strain }
+}

@@ -1,0 +1,96 @@
+//! Spacing of nodes and the other numerical choices for a solid.
+
+use super::body::bounds;
+use super::schema::{Finer, SolidFile};
+use crate::analysis::SolidSettings;
+use crate::case::build::report::Report;
+use crate::crack::CrackSurface;
+use crate::geometry::surface::Surface;
+use crate::math::Vector3;
+use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SolidSpacing, estimated_solid_nodes};
+
+/// Spacing over the cube root of the volume, if the case says none.
+const BODY_FRACTION: f64 = 1.0 / 20.0;
+/// Spacing at fronts over the size of the crack, if the case says none.
+const FRONT_FRACTION: f64 = 1.0 / 30.0;
+/// Growth of the spacing, if the case says none.
+const GROWTH: f64 = 0.2;
+/// Least spacing over the size of the body; below it positions have too few digits left.
+const LEAST_SPACING: f64 = 1e-6;
+
+pub(super) fn settings(
+    file: &SolidFile,
+    body: &Surface,
+    cracks: &[CrackSurface],
+    report: &mut Report,
+) -> Option<SolidSettings> {
+    let nodes = &file.nodes;
+    let size = body.bounds().size().norm();
+    let mut sound = true;
+    let mut checked = |value: Option<f64>, key: &str, report: &mut Report| {
+        if let Some(h) = value.filter(|h| !(*h > LEAST_SPACING * size && *h < size)) {
+            let allowed = format!("above {:.3e} and below {size:.3e}, the size of the body", LEAST_SPACING * size);
+            report.error(key, format!("{h} is no spacing for this body")).allow(allowed);
+            sound = false;
+        }
+    };
+    checked(nodes.spacing, "nodes.spacing", report);
+    checked(nodes.front_spacing, "nodes.front_spacing", report);
+    for (index, finer) in nodes.finer.iter().enumerate() {
+        checked(Some(finer.spacing), &format!("nodes.finer[{index}].spacing"), report);
+    }
+    let largest = nodes.spacing.unwrap_or_else(|| BODY_FRACTION * body.volume().cbrt());
+    let mut regions = vec![];
+    for crack in cracks {
+        let extent = crack.surface.bounds().size().norm() / 2f64.sqrt();
+        let h = nodes.front_spacing.unwrap_or_else(|| (FRONT_FRACTION * extent).min(largest));
+        let pieces = crack.fronts.iter().flat_map(|f| f.segments().collect::<Vec<_>>());
+        regions.extend(pieces.map(|s| (Region::Segment(s), h)));
+    }
+    for (index, finer) in nodes.finer.iter().enumerate() {
+        regions.extend(finer_regions(finer, &format!("nodes.finer[{index}]"), body, report)?);
+    }
+    if !sound {
+        return None;
+    }
+    let smallest = regions.iter().map(|r| r.1).fold(largest, f64::min);
+    let regions = regions.into_iter().filter(|r| r.1 < largest).collect();
+    let spacing = SolidSpacing::new(largest, nodes.growth.unwrap_or(GROWTH), regions);
+    let n = estimated_solid_nodes(body, &spacing);
+    if !(n <= MAX_SOLID_NODES as f64) {
+        let message = format!("the spacing asks for about {n:.1e} nodes, smallest spacing {smallest:.3e}");
+        report.error("nodes", message).allow(format!("up to {MAX_SOLID_NODES} nodes"));
+        return None;
+    }
+    Some(SolidSettings {
+        spacing,
+        nodes_on_fronts: nodes.on_fronts.unwrap_or(NodesOnFronts::Single),
+        collocation: file.collocation,
+        points_on_front: file.fracture.points,
+    })
+}
+
+fn finer_regions(finer: &Finer, key: &str, body: &Surface, report: &mut Report) -> Option<Vec<(Region, f64)>> {
+    let regions = match (&finer.part, &finer.cuboid, &finer.ball) {
+        (Some(name), None, None) => {
+            let on_part = |t: &u32| body.parts()[body.part_of(*t) as usize].name == *name;
+            let triangles: Vec<u32> = (0..body.triangles().len() as u32).filter(on_part).collect();
+            if triangles.is_empty() {
+                let names = body.parts().iter().map(|p| p.name.as_str());
+                report.error(format!("{key}.part"), "unknown part").one_of(name, names);
+                return None;
+            }
+            triangles.iter().map(|t| Region::Triangle(body.corners(*t))).collect()
+        }
+        (None, Some(b), None) => vec![Region::Box(bounds(b, &format!("{key}.box"), report)?)],
+        (None, None, Some(b)) => {
+            report.positive(format!("{key}.ball.radius"), b.radius).then_some(())?;
+            vec![Region::Ball { center: Vector3::from(b.center), radius: b.radius }]
+        }
+        _ => {
+            report.error(key, "a region is one of several kinds").allow("one of `part`, `box`, `ball`");
+            return None;
+        }
+    };
+    Some(regions.into_iter().map(|r| (r, finer.spacing)).collect())
+}

@@ -1,0 +1,20 @@
+//! A cracked solid: its surface, its cracks, and what acts on them.
+
+use super::solid::Solid;
+use crate::crack::CrackSurface;
+use crate::geometry::surface::Surface;
+
+/// A linear elastic solid in space with cracks, loads and supports.
+#[derive(Clone, Debug)]
+pub struct SolidModel {
+    /// Title of the case.
+    pub title: String,
+    /// Boundary of the body; conditions belong to its parts by index.
+    pub body: Surface,
+    /// Names of the cracks.
+    pub crack_names: Vec<String>,
+    /// The cracks.
+    pub cracks: Vec<CrackSurface>,
+    /// Material, loads and supports.
+    pub solid: Solid<3>,
+}

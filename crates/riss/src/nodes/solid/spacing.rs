@@ -1,0 +1,91 @@
+//! How far apart nodes of a solid shall stand: smallest at crack fronts and in given regions, growing away from them.
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::triangle::{self, Triangle};
+use crate::math::Vector3;
+use crate::nodes::source_tree::SourceTree;
+
+/// A spacing that every point can be asked for.
+#[derive(Clone, Debug)]
+pub struct SolidSpacing {
+    largest: f64,
+    growth: f64,
+    regions: Vec<Region>,
+    spacings: Vec<f64>,
+    tree: SourceTree<3>,
+}
+
+/// Where a spacing is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// Along a straight line, such as a piece of a crack front.
+    Segment([Vector3; 2]),
+    /// On a triangle, such as one of a part of the boundary.
+    Triangle(Triangle),
+    /// In a box.
+    Box(Aabb<3>),
+    /// In a ball.
+    Ball {
+        /// Its center.
+        center: Vector3,
+        /// Its radius [length].
+        radius: f64,
+    },
+}
+
+impl Region {
+    fn distance(&self, p: Vector3) -> f64 {
+        match self {
+            Self::Segment([a, b]) => {
+                let e = b - a;
+                let t = ((p - a).dot(&e) / e.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+                (p - a - e * t).norm()
+            }
+            Self::Triangle(corners) => (triangle::closest(*corners, p).0 - p).norm(),
+            Self::Box(r) => (r.lower - p).sup(&(p - r.upper)).sup(&Vector3::zeros()).norm(),
+            Self::Ball { center, radius } => ((p - center).norm() - radius).max(0.0),
+        }
+    }
+
+    fn aabb(&self) -> Aabb<3> {
+        match self {
+            Self::Segment(ends) => Aabb::of_points(*ends),
+            Self::Triangle(corners) => triangle::bounds(*corners),
+            Self::Box(r) => *r,
+            Self::Ball { center, radius } => Aabb::around(*center, Vector3::repeat(*radius)),
+        }
+    }
+}
+
+impl SolidSpacing {
+    /// The same spacing everywhere [length].
+    pub fn uniform(spacing: f64) -> Self {
+        Self::new(spacing, 0.2, vec![])
+    }
+
+    /// - `largest`: spacing where nothing asks for less [length]
+    /// - `growth`: slope of the spacing with the distance from a region, in (0, 0.5]
+    /// - `regions`: with the spacing that each asks for [length]
+    pub fn new(largest: f64, growth: f64, regions: Vec<(Region, f64)>) -> Self {
+        let (regions, spacings): (Vec<_>, Vec<_>) = regions.into_iter().unzip();
+        let boxes: Vec<_> = regions.iter().map(Region::aabb).collect();
+        let tree = SourceTree::new(&boxes, &spacings);
+        Self { largest, growth, regions, spacings, tree }
+    }
+
+    /// Spacing at a point [length].
+    pub fn at(&self, p: Vector3) -> f64 {
+        let asked = |i: u32| self.spacings[i as usize] + self.growth * self.regions[i as usize].distance(p);
+        self.tree.least(p, self.growth, self.largest, asked)
+    }
+
+    /// Slope of the spacing with distance.
+    pub fn growth(&self) -> f64 {
+        self.growth
+    }
+
+    /// Spacing where nothing asks for less [length].
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+}

@@ -1,0 +1,125 @@
+//! Files of a solid: its nodes with their fields, its cracks with their opening, its results.
+
+use super::report::REPORT_FILE;
+use super::solid_report::solid_report;
+use super::solid_results::SolidResults;
+use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
+use super::whole_file::write_whole;
+use super::{RESULTS_FILE, RunInfo};
+use crate::analysis::SolidResult;
+use crate::math::Matrix;
+use crate::model::SolidModel;
+use crate::nodes::cloud::{Cloud, Place, SurfaceId};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Writes the nodes alone, for ParaView; returns the path.
+///
+/// # Errors
+/// What the system says.
+pub fn write_solid_cloud(dir: &Path, cloud: &Cloud<3>) -> io::Result<PathBuf> {
+    let path = dir.join("nodes.vtu");
+    write_whole(&path, &spatial_grid(&cloud.positions, &vertices(cloud.len()), &places(cloud), &[]))?;
+    Ok(path)
+}
+
+/// Writes all files of a run into `dir`; returns their paths, `results.json` last.
+///
+/// # Errors
+/// What the system says.
+pub fn write_solid_results(
+    dir: &Path,
+    model: &SolidModel,
+    info: &RunInfo,
+    result: &SolidResult,
+) -> io::Result<Vec<PathBuf>> {
+    std::fs::create_dir_all(dir)?;
+    match std::fs::remove_file(dir.join(RESULTS_FILE)) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
+        _ => {}
+    }
+    let mut files = vec![("nodes-0000.vtu".to_string(), nodes(result))];
+    files.push(("nodes.pvd".into(), collection(&[(0, "nodes-0000.vtu".into())])));
+    if !model.cracks.is_empty() {
+        files.push(("cracks-0000.vtu".into(), cracks(result)));
+        files.push(("cracks.pvd".into(), collection(&[(0, "cracks-0000.vtu".into())])));
+    }
+    let names = files.iter().map(|f| f.0.clone()).chain([REPORT_FILE.into()]).collect();
+    let results = SolidResults::new(model, info, result, names);
+    files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
+    let mut text = serde_json::to_string_pretty(&results)?;
+    text.push('\n');
+    files.push((RESULTS_FILE.into(), text.into_bytes()));
+    let write = |(name, content): &(String, Vec<u8>)| {
+        let path = dir.join(name);
+        write_whole(&path, content).map(|()| path)
+    };
+    files.iter().map(write).collect()
+}
+
+/// The results in a folder, if they are those of a solid.
+pub fn read_solid_results(dir: &Path) -> Option<SolidResults> {
+    serde_json::from_str(&std::fs::read_to_string(dir.join(RESULTS_FILE)).ok()?).ok()
+}
+
+fn vertices(n: usize) -> Cells {
+    Cells { cell_type: CellType::Vertex, points: (0..n as u32).collect(), sizes: vec![1; n] }
+}
+
+/// What nodes stand on: 0 inside, 1 on the boundary, 2 on its edges and corners, 3 on a crack face, 4 on a front; and
+/// their spacing.
+fn places(cloud: &Cloud<3>) -> Vec<Array> {
+    let is_face = |id: SurfaceId| matches!(id, SurfaceId::Face { .. });
+    let kind = |place: &Place<3>| match place {
+        Place::Inside => 0,
+        Place::Surface(facets) if facets.iter().any(|f| is_face(f.surface)) => 3,
+        Place::Surface(facets) if facets.len() > 1 => 2,
+        Place::Surface(_) => 1,
+        Place::Front { .. } => 4,
+    };
+    let normal = |place: &Place<3>| match place {
+        Place::Inside => Default::default(),
+        Place::Surface(facets) | Place::Front { facets, .. } => {
+            facets.first().map_or_else(Default::default, |f| f.normal)
+        }
+    };
+    vec![
+        Array::integers("kind", cloud.places.iter().map(kind)),
+        Array::scalars("spacing", cloud.spacings.iter().copied()),
+        Array::spatial_vectors("normal", cloud.places.iter().map(normal)),
+    ]
+}
+
+fn nodes(result: &SolidResult) -> Vec<u8> {
+    let principal: Vec<[f64; 3]> = (0..result.n_nodes).map(|k| result.principal_stresses(k)).collect();
+    let mut arrays = places(&result.cloud);
+    arrays.push(Array::spatial_vectors("displacement", result.displacements.iter().copied()));
+    arrays.push(Array::spatial_tensors("stress", result.stresses.iter().copied()));
+    arrays.push(Array::triples("principal stress", &["1", "2", "3"], principal));
+    arrays.push(Array::scalars("von Mises stress", result.stresses.iter().map(von_mises)));
+    spatial_grid(&result.cloud.positions, &vertices(result.n_nodes), &arrays, &[])
+}
+
+fn von_mises(stress: &Matrix<3>) -> f64 {
+    let deviator = stress - Matrix::from_diagonal_element(stress.trace() / 3.0);
+    (1.5 * deviator.norm_squared()).sqrt()
+}
+
+fn cracks(result: &SolidResult) -> Vec<u8> {
+    let (mut positions, mut openings, mut gaps) = (vec![], vec![], vec![]);
+    let mut cells = Cells { cell_type: CellType::Triangle, points: vec![], sizes: vec![] };
+    let mut index = vec![];
+    for (crack, opened) in result.opened_cracks.iter().enumerate() {
+        let first = positions.len() as u32;
+        positions.extend(&opened.positions);
+        openings.extend(&opened.openings);
+        gaps.extend(&opened.gaps);
+        for t in &opened.triangles {
+            cells.points.extend(t.map(|k| k + first));
+            cells.sizes.push(3);
+            index.push(crack as i64);
+        }
+    }
+    let arrays = [Array::spatial_vectors("opening", openings), Array::scalars("normal opening", gaps)];
+    spatial_grid(&positions, &cells, &arrays, &[Array::integers("crack", index)])
+}

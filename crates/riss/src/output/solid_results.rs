@@ -1,0 +1,219 @@
+//! `results.json` of a solid.
+//!
+//! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
+
+use super::{RunInfo, RunStatus};
+use crate::analysis::{FrontPointRecord, SolidResult};
+use crate::model::SolidModel;
+use crate::nodes::cloud::Place;
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a run of a solid found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidResults {
+    /// Version of riss that wrote the file.
+    pub riss: String,
+    /// Title of the case.
+    pub case: String,
+    /// Name of the method.
+    pub method: String,
+    /// How the run ended.
+    pub status: RunStatus,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Time from start to end [s].
+    pub wall_time_s: Option<f64>,
+    /// Time of each stage [s].
+    pub stage_time_s: BTreeMap<String, f64>,
+    /// Greatest memory use.
+    pub peak_memory_bytes: Option<u64>,
+    /// What the linear solver did.
+    pub solver: SolverResults,
+    /// Names of the other files of this run, in the same folder.
+    pub files: Vec<String>,
+    /// Largest stresses at nodes.
+    pub stress: StressResults,
+    /// Every crack, in the order of the case.
+    pub cracks: Vec<SolidCrackResults>,
+    /// Every front: pieces of the rim of a crack inside the body.
+    pub fronts: Vec<FrontResults>,
+}
+
+/// What the linear solver did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolverResults {
+    /// The method.
+    pub method: String,
+    /// Multiplications by the matrix.
+    pub iterations: usize,
+    /// Relative residual.
+    pub residual: Option<f64>,
+}
+
+/// Largest stresses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StressResults {
+    /// Largest principal stress at a node that is not on a front [stress].
+    pub largest_principal: Option<f64>,
+    /// Where it is.
+    pub position: Option<[f64; 3]>,
+}
+
+/// A crack.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidCrackResults {
+    /// Its name.
+    pub name: String,
+    /// Largest opening between nodes of both faces [length].
+    pub largest_opening: Option<f64>,
+    /// Smallest opening [length]; negative if faces overlap.
+    pub smallest_opening: Option<f64>,
+}
+
+/// A front.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrontResults {
+    /// Name of its crack.
+    pub crack: String,
+    /// Whether it is a loop.
+    pub closed: bool,
+    /// Its length [length].
+    pub length: Option<f64>,
+    /// Points along it.
+    pub points: Vec<FrontPointResults>,
+}
+
+/// Fracture quantities at a point of a front.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrontPointResults {
+    /// The point.
+    pub position: [Option<f64>; 3],
+    /// Length along the front, in the direction `ahead` × `normal` [length].
+    pub s: Option<f64>,
+    /// Direction ahead of the crack (x1).
+    pub ahead: [Option<f64>; 3],
+    /// Normal of the crack (x2).
+    pub normal: [Option<f64>; 3],
+    /// Stress intensity factor of mode I [stress·√length].
+    #[serde(rename = "K_I")]
+    pub k1: Option<f64>,
+    /// Stress intensity factor of mode II [stress·√length].
+    #[serde(rename = "K_II")]
+    pub k2: Option<f64>,
+    /// Stress intensity factor of mode III [stress·√length].
+    #[serde(rename = "K_III")]
+    pub k3: Option<f64>,
+    /// Largest deviation of a factor over the discs that it was computed on [stress·√length].
+    #[serde(rename = "K_uncertainty")]
+    pub k_uncertainty: Option<f64>,
+    /// Stress along `ahead` that does not fade at the front [stress].
+    #[serde(rename = "T")]
+    pub t_stress: Option<f64>,
+    /// Largest deviation of the T-stress over the discs [stress].
+    #[serde(rename = "T_uncertainty")]
+    pub t_uncertainty: Option<f64>,
+    /// J-integral [stress·length].
+    #[serde(rename = "J")]
+    pub j: Option<f64>,
+    /// Radius of the largest disc [length].
+    pub disc_radius: Option<f64>,
+}
+
+/// JSON schema of `results.json` of a solid.
+pub fn solid_results_schema() -> String {
+    let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+    let mut schema = generator.into_root_schema_for::<SolidResults>();
+    schema.insert("title".into(), "results.json of riss for solids".into());
+    serde_json::to_string_pretty(&schema).expect("a schema is plain values") + "\n"
+}
+
+impl SolidResults {
+    /// The results of a run; `files` are the names of the others.
+    pub fn new(model: &SolidModel, info: &RunInfo, result: &SolidResult, files: Vec<String>) -> Self {
+        let mut stage_time_s = BTreeMap::new();
+        for (stage, time) in &info.stage_time_s {
+            *stage_time_s.entry(stage.clone()).or_insert(0.0) += time;
+        }
+        let fronts = result.fronts.iter().map(|front| FrontResults {
+            crack: model.crack_names[front.crack].clone(),
+            closed: front.is_closed,
+            length: finite(front.length),
+            points: front.points.iter().map(point).collect(),
+        });
+        let cracks = model.crack_names.iter().zip(&result.opened_cracks).map(|(name, opened)| SolidCrackResults {
+            name: name.clone(),
+            largest_opening: opened.gaps.iter().copied().reduce(f64::max).and_then(finite),
+            smallest_opening: opened.gaps.iter().copied().reduce(f64::min).and_then(finite),
+        });
+        let effort = &result.effort;
+        Self {
+            riss: env!("CARGO_PKG_VERSION").into(),
+            case: info.title.clone(),
+            method: info.method.clone(),
+            status: info.status,
+            nodes: result.n_nodes,
+            unknowns: 3 * result.n_nodes,
+            wall_time_s: finite(info.wall_time_s),
+            stage_time_s,
+            peak_memory_bytes: info.peak_memory_bytes,
+            solver: SolverResults {
+                method: effort.method.into(),
+                iterations: effort.iterations,
+                residual: finite(effort.residual),
+            },
+            files,
+            stress: stress(result),
+            cracks: cracks.collect(),
+            fronts: fronts.collect(),
+        }
+    }
+}
+
+fn stress(result: &SolidResult) -> StressResults {
+    // On a front the stress is none.
+    let is_front = |k: usize| matches!(result.cloud.places[k], Place::Front { .. });
+    let largest = (0..result.n_nodes)
+        .filter(|k| !is_front(*k))
+        .map(|k| (result.principal_stresses(k)[0], k))
+        .filter(|(s, _)| s.is_finite())
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    StressResults {
+        largest_principal: largest.map(|l| l.0),
+        position: largest.map(|(_, k)| result.cloud.positions[k].into()),
+    }
+}
+
+fn point(record: &FrontPointRecord) -> FrontPointResults {
+    let (p, factors) = (&record.point, record.factors.as_ref());
+    let of = |k: usize| factors.and_then(|f| finite(f.factors[k]));
+    let triple = |v: crate::math::Vector3| [finite(v.x), finite(v.y), finite(v.z)];
+    FrontPointResults {
+        position: triple(p.position),
+        s: finite(p.s),
+        ahead: triple(p.ahead),
+        normal: triple(p.normal),
+        k1: of(0),
+        k2: of(1),
+        k3: of(2),
+        k_uncertainty: factors.and_then(|f| finite(f.uncertainty)),
+        t_stress: factors.and_then(|f| finite(f.t_stress)),
+        t_uncertainty: factors.and_then(|f| finite(f.t_uncertainty)),
+        j: factors.and_then(|f| finite(f.j)),
+        disc_radius: record.radius.and_then(finite),
+    }
+}
+
+fn finite(v: f64) -> Option<f64> {
+    v.is_finite().then_some(v)
+}
