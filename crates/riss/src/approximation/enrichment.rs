@@ -39,8 +39,6 @@ struct Region {
     radii: [f64; 2],
     /// Distance from which on the functions jump where no crack is [length].
     clear: f64,
-    /// Spacing of the nodes at the tip [length].
-    spacing: f64,
     /// Values of the functions at nodes that may reach into the region.
     values: FxHashMap<u32, [f64; MOST_FUNCTIONS]>,
 }
@@ -99,8 +97,7 @@ impl Enrichment {
                 Form::OfNodes => clear,
             };
             let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, reach, 0.0);
-            let spacing = spacing.at_tip;
-            regions.push(Region { coordinates, radii, clear, spacing, values: FxHashMap::default() });
+            regions.push(Region { coordinates, radii, clear, values: FxHashMap::default() });
         }
         ((!regions.is_empty()).then_some(Self { functions, form, ramp: settings.ramp, regions }), notes)
     }
@@ -118,11 +115,6 @@ impl Enrichment {
     /// Coordinates at the tip of each region.
     pub fn coordinates(&self) -> impl Iterator<Item = &TipCoordinates> {
         self.regions.iter().map(|r| &r.coordinates)
-    }
-
-    /// Spacing of the nodes at the tip of each region [length].
-    pub fn spacings(&self) -> impl Iterator<Item = f64> + '_ {
-        self.regions.iter().map(|r| r.spacing)
     }
 
     /// Whether a node with the given support reaches into a region.
