@@ -17,6 +17,15 @@ fn bench(c: &mut Criterion) {
     group.bench_function("assemble_10k", |b| {
         b.iter(|| black_box(assemble(&model, &discrete, &ConstraintMethod::default()).unwrap()));
     });
+    // Finite elements along the support and away from the crack.
+    let mut coupled = Settings { constraints: ConstraintMethod::FiniteElementCoupled, ..Settings::default() };
+    let spacing = Some((112.0f64 / 10_000.0).sqrt());
+    coupled.nodes.layout = Layout::Graded(Graded { spacing, ..Graded::default() });
+    coupled.approximation.finite_elements_beyond = Some(3.0);
+    let elements = discretize(&model, &coupled, &mut Silent).unwrap();
+    group.bench_function("assemble_10k_coupled", |b| {
+        b.iter(|| black_box(assemble(&model, &elements, &coupled.constraints).unwrap()));
+    });
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Graded(Graded { spacing: Some((112.0f64 / 10_000.0).sqrt()), ..Graded::default() });
     group.bench_function("discretize_10k", |b| {

@@ -2,6 +2,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use riss::analysis::{Settings, Silent, discretize};
+use riss::approximation::enrichment::TipSpacing;
 use riss::approximation::moving_least_squares::Derivatives;
 use riss::approximation::{
     ApproximationSettings, Basis, CrackSmoothing, Enrichment, EnrichmentKind, EnrichmentSettings, MovingLeastSquares,
@@ -26,7 +27,8 @@ fn enrichment(kind: EnrichmentKind) -> Option<Enrichment> {
     let vertices = vec![Vector2::new(0.0, 20.3), Vector2::new(20.3, 20.3)];
     let path = CrackPath { name: "crack".into(), vertices, ends: [EndKind::Mouth, EndKind::Tip] };
     let model = Model { cracks: vec![path], ..Model::plain(Domain::new(edges, vec![])) };
-    Enrichment::of_model(&model, &EnrichmentSettings { kind, ..EnrichmentSettings::default() }).0
+    let spacing = TipSpacing { at_tip: 1.0, elsewhere: 1.0 };
+    Enrichment::of_model(&model, &EnrichmentSettings { kind, ..EnrichmentSettings::default() }, &[spacing]).0
 }
 
 /// A jittered grid of unit spacing; a support radius of 2.5 gives 20 neighbors on average.

@@ -1,6 +1,6 @@
 //! Error of the stress in the energy norm, from what smoothing changes of it [CPM, Eqs. A.1-A.6].
 
-use super::recovery::{Buffer, RecoveredStress};
+use super::recovery::{Buffer, RecoveredStress, SingularStress};
 use crate::error::Result;
 use crate::integration::cells::as_usize;
 use crate::material::Elasticity;
@@ -47,7 +47,18 @@ pub fn estimate_error(model: &Model, discrete: &Discretization, solution: &Solut
     Ok(ErrorEstimate { error: points.iter().sum(), points, energy })
 }
 
-/// Squared energy norm of the estimated error in each of some disks, of given centers and radii [stress·length²].
+/// A disk around a tip.
+#[derive(Clone, Debug)]
+pub struct TipDisk {
+    /// Center.
+    pub center: Vector2,
+    /// Radius [length].
+    pub radius: f64,
+    /// The singular stress, where nodes hold it.
+    pub singular: Option<SingularStress>,
+}
+
+/// Squared energy norm of the estimated error in each of some disks [stress·length²].
 ///
 /// # Errors
 /// Those of the shape functions.
@@ -55,7 +66,26 @@ pub fn estimate_error_within(
     model: &Model,
     discrete: &Discretization,
     solution: &Solution,
+    disks: &[TipDisk],
+) -> Result<Vec<f64>> {
+    let places = |disks: &[TipDisk]| disks.iter().map(|d| (d.center, d.radius)).collect::<Vec<_>>();
+    if disks.iter().all(|d| d.singular.is_none()) {
+        return errors_within(model, discrete, solution, &places(disks), None);
+    }
+    // What is left of the stress without the singular part of one tip is smooth at that tip only.
+    let one = |d: &TipDisk| {
+        let found = errors_within(model, discrete, solution, &[(d.center, d.radius)], d.singular.clone())?;
+        Ok(found[0])
+    };
+    disks.iter().map(one).collect()
+}
+
+fn errors_within(
+    model: &Model,
+    discrete: &Discretization,
+    solution: &Solution,
     disks: &[(Vector2, f64)],
+    singular: Option<SingularStress>,
 ) -> Result<Vec<f64>> {
     let cells = &discrete.cells;
     let points = |cell: usize| &cells.points[as_usize(&cells.point_ranges[cell])];
@@ -73,7 +103,7 @@ pub fn estimate_error_within(
         (center, far.fold(radius, f64::max))
     };
     let reached: Vec<_> = disks.iter().map(reach).collect();
-    let recovered = RecoveredStress::within(model, discrete, solution, &reached)?;
+    let recovered = RecoveredStress::within(model, discrete, solution, &reached, singular)?;
     let errors: Vec<(Vec<f64>, f64)> = near
         .par_iter()
         .with_min_len(8)

@@ -9,7 +9,8 @@ pub mod quadtree;
 pub mod recovery;
 pub mod settings;
 
-pub use error_estimate::{ErrorEstimate, estimate_error, estimate_error_within};
+pub use error_estimate::{ErrorEstimate, TipDisk, estimate_error, estimate_error_within};
 pub use marking::{Marks, mark};
 pub use quadtree::{Quadtree, Square};
+pub use recovery::SingularStress;
 pub use settings::AccuracySettings;

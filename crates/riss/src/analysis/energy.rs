@@ -106,6 +106,9 @@ pub fn reactions(
             }
         }
     }
+    for (part, force) in &solution.support_forces {
+        *sums[*part].get_or_insert_default() += *force;
+    }
     let parts = model.domain.parts.iter().zip(sums).filter_map(|(p, s)| Some((p.name.clone(), s? * model.thickness)));
     let mut result: Vec<(String, Vector2)> = parts.collect();
     let mut forces = solution.point_forces.iter();

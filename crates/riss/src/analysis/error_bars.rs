@@ -8,11 +8,15 @@
 //!   `λ = ‖e‖² E' / (K² R)`, with the error estimate `‖e‖`;
 //! - the difference between `√(E' J)` and the factors.
 //!
+//! Where the nodes hold the field of the tip, it is not smoothed, and the estimate sees little: what is left is the error of
+//! polynomials in the rest of the field, which goes with the square of the supports over the size of the domain and is added.
+//!
 //! The multiple is calibrated by bodies with known factors (`cargo xtask calibrate`). It grows with `λ`, as recovery sees
 //! less of the error on coarse nodes.
 
 use super::record::{CrackRecord, TipRecord};
-use crate::adaptivity::estimate_error_within;
+use crate::adaptivity::{SingularStress, TipDisk, estimate_error_within};
+use crate::approximation::tip_functions::TipCoordinates;
 use crate::error::Result;
 use crate::math::Vector2;
 use crate::model::Model;
@@ -22,6 +26,9 @@ use crate::system::{Discretization, Solution};
 const SHARE: f64 = 0.25;
 /// How fast that part grows with `λ`.
 const SHARE_GROWTH: f64 = 20.0;
+/// Part of the square of the largest support in the largest domain over its radius that is in a bar where nodes hold the
+/// field of the tip.
+const ENRICHED_SHARE: f64 = 0.006;
 
 /// Widens the bars of all tips, which hold the spread over the domains before.
 ///
@@ -35,20 +42,40 @@ pub(super) fn widen_error_bars(
 ) -> Result<()> {
     let mut tips: Vec<&mut TipRecord> =
         cracks.iter_mut().flat_map(|c| &mut c.tips).filter(|t| t.k1.is_some() && !t.radii.is_empty()).collect();
-    let disk = |tip: &&mut TipRecord| (tip.position, tip.radii.iter().copied().fold(0.0, f64::max));
-    let disks: Vec<(Vector2, f64)> = tips.iter().map(disk).collect();
+    let disk = |tip: &&mut TipRecord| {
+        let coordinates = enriched(discrete, tip.position);
+        let factors = [tip.k1, tip.k2].map(|k| k.unwrap_or(0.0));
+        let singular = coordinates.map(|c| SingularStress::new(&model.material, c, factors));
+        TipDisk { center: tip.position, radius: tip.radii.iter().copied().fold(0.0, f64::max), singular }
+    };
+    let disks: Vec<TipDisk> = tips.iter().map(disk).collect();
     let errors = estimate_error_within(model, discrete, solution, &disks)?;
     let young = model.material.effective_young();
-    for ((tip, error), (_, radius)) in tips.iter_mut().zip(errors).zip(disks) {
+    for ((tip, error), TipDisk { radius, .. }) in tips.iter_mut().zip(errors).zip(disks) {
         let (Some(k1), Some(k2), Some(spread)) = (tip.k1, tip.k2, tip.k_uncertainty) else { continue };
         let size = k1.hypot(k2);
         let part = size * numerical_part(error * young / (size * size * radius));
         let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
         // A tip without load has no part.
         let part = if part.is_finite() { part } else { 0.0 };
-        tip.k_uncertainty = Some((spread + part).max(second));
+        let smooth = enriched(discrete, tip.position).map_or(0.0, |_| {
+            ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2)
+        });
+        tip.k_uncertainty = Some((spread + part + smooth).max(second));
     }
     Ok(())
+}
+
+/// Coordinates at a tip whose field the nodes hold.
+fn enriched(discrete: &Discretization, tip: Vector2) -> Option<&TipCoordinates> {
+    discrete.approximation.enrichment()?.coordinates().find(|c| c.tip() == tip)
+}
+
+/// Radius of the largest support of a node in a disk [length].
+fn largest_support(discrete: &Discretization, center: Vector2, radius: f64) -> f64 {
+    let nodes = discrete.approximation.nodes();
+    let inside = nodes.positions.iter().zip(&nodes.support_radii).filter(|(p, _)| (*p - center).norm() < radius);
+    inside.map(|(_, support)| support.max()).fold(0.0, f64::max)
 }
 
 /// What the discretization leaves out, over the size of the factors, for a given `λ`.

@@ -159,7 +159,7 @@ pub fn discretize(model: &Model, settings: &Settings, observer: &mut dyn Observe
     observer.stage(Stage::Nodes);
     let layered = generate(model, &settings.nodes, settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
-    Discretization::new(model, layered, &settings.approximation, &settings.integration)
+    Discretization::new(model, layered, &settings.approximation, &settings.integration, &settings.constraints)
 }
 
 /// The same with irregular nodes at a given spacing.
@@ -175,7 +175,7 @@ pub fn discretize_at(
     observer.stage(Stage::Nodes);
     let layered = generate_at(model, spacing, settings.nodes.star.as_ref(), settings.method.crack_form())?;
     observer.stage(Stage::Discretization);
-    Discretization::new(model, layered, &settings.approximation, &settings.integration)
+    Discretization::new(model, layered, &settings.approximation, &settings.integration, &settings.constraints)
 }
 
 /// Assembles and solves; a matrix that Nitsche's terms made indefinite is tried again with a larger stabilization.
@@ -246,8 +246,14 @@ fn evaluate_tip(
     let view = TipView::new(model, id);
     let mut record = TipRecord::unknown(id.end, view.frame);
     if !solution.tip_factors.is_empty() {
-        let place = model.tips().iter().position(|t| t.0 == id);
-        [record.k1_direct, record.k2_direct] = place.map_or([None; 2], |tip| solution.tip_factors[tip].map(Some));
+        match direct_factors(model, discrete, solution, id) {
+            Some(factors) => [record.k1_direct, record.k2_direct] = factors.map(Some),
+            None => warnings.add(format!(
+                "no K_I_direct and K_II_direct of the tip at ({:.6}, {:.6}): its functions fade inside the body, and where they \
+                 do they take what the nodes leave of the field, not K; K_I and K_II are not touched by that",
+                view.frame.position.x, view.frame.position.y
+            )),
+        }
     }
     let radii = match view.radii(settings.fracture.domain, settings.fracture.radii.as_deref()) {
         Ok((radii, note)) => {
@@ -295,6 +301,15 @@ fn evaluate_tip(
     record.status = status(k1, k2, contact(view.frame.position));
     record.radii = radii;
     Ok(record)
+}
+
+/// Stress intensity factors that were solved for; none where the functions of the tip fade: the energy is least with a
+/// smaller multiple of them then, the smaller the finer the nodes at the tip are.
+fn direct_factors(model: &Model, discrete: &Discretization, solution: &Solution, id: TipId) -> Option<[f64; 2]> {
+    let place = model.tips().iter().position(|t| t.0 == id)?;
+    let (tip, [inner, _]) = discrete.approximation.enrichment()?.regions().nth(place)?;
+    let farthest = discrete.approximation.nodes().positions.iter().map(|p| (p - tip).norm()).fold(0.0, f64::max);
+    (inner >= farthest).then(|| solution.tip_factors[place])
 }
 
 /// What a tip does, by its factors and the contact pressure on the faces there.

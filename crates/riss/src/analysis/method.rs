@@ -3,6 +3,7 @@
 use super::crack_growth::GrowthSettings;
 use super::crack_growth::settings::IncrementControl;
 use super::settings::Settings;
+use crate::approximation::EnrichmentKind;
 use crate::crack::CrackForm;
 use crate::fracture::{FractureSettings, GrowthCriterion, TipDomainShape};
 use schemars::JsonSchema;
@@ -53,6 +54,7 @@ impl Method {
             Self::ElementFreeGalerkin => {}
             Self::CrackingParticles => {
                 settings.approximation.dilation = Some(PARTICLE_DILATION);
+                settings.approximation.enrichment.kind = EnrichmentKind::None;
                 // Differs from [CPM, section 3.1]: with the faces, the force does not depend on the size of the domain.
                 settings.fracture = FractureSettings { domain: TipDomainShape::Square, ..settings.fracture };
             }

@@ -59,6 +59,9 @@ pub(super) fn refine(
     accuracy: &AccuracySettings,
     warnings: &mut Warnings,
 ) -> Result<(Solved, Vec<RefinementRecord>)> {
+    // The estimate of the error does not see what the functions of a tip do.
+    let approximation = settings.approximation.without_automatic_enrichment();
+    let settings = &Settings { approximation, ..settings.clone() };
     let mut tree = first_tree(model, &settings.nodes);
     let mut records: Vec<RefinementRecord> = vec![];
     let said = warnings.list.len();

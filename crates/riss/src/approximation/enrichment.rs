@@ -1,31 +1,22 @@
 //! Where the basis holds the field of a crack tip, and how it fades into the plain one [EFG, sections 5.3, 5.4].
 
 use super::detour::Jet;
-use super::discontinuity::through_void;
 use super::extra::Extra;
 use super::global_functions::{GlobalFunctions, GlobalRegion};
 use super::partition_of_unity::{ExtraFunctions, ExtraRegion};
-use super::settings::{EnrichmentKind, EnrichmentSettings, Ramp};
-use super::tip_functions::{LARGEST_TURN, MOST_FUNCTIONS, TipCoordinates, TipFunctions};
-use crate::crack::{CrackPath, End, EndKind, TipId};
+pub use super::region_size::TipSpacing;
+use super::region_size::{Form, RegionSize, wants_functions};
+use super::settings::{
+    ApproximationSettings, Basis, CrackSmoothing, EnrichmentKind, EnrichmentSettings, HoleSmoothing, Ramp,
+    SmoothingSettings, SupportShape,
+};
+use super::tip_functions::{MOST_FUNCTIONS, TipCoordinates, TipFunctions};
 use crate::geometry::aabb::Aabb;
-use crate::math::{Matrix2, Vector2, cross};
+use crate::math::{Matrix2, Vector2};
 use crate::model::Model;
 use crate::nodes::Nodes;
-use crate::nodes::spacing::free_radius;
 use rustc_hash::FxHashMap;
 
-/// Outer radius of an automatic region over that of the disk around the tip that holds nothing but its crack.
-const OUTER_SHARE: f64 = 0.5;
-/// Inner radius of an automatic region over the outer one.
-const INNER_SHARE: f64 = 0.5;
-/// Automatic regions end at the first kink with more than this turn, around which the mapped field is a poor one [rad].
-const SHARP_TURN: f64 = 1.0;
-/// A region keeps this share of the distance to another tip, so that regions do not meet.
-const SHARED: f64 = 0.499;
-/// A region keeps this share of the distance from which on the cut of its functions leaves the crack: nodes beyond the
-/// region reach into it.
-const CLEARANCE: f64 = 0.65;
 /// The cut follows the crack up to this multiple of the outer radius, for the same reason.
 const CUT_REACH: f64 = 2.0;
 /// Derivatives of the tip functions are held nearer to the tip than this, over the least support radius around it.
@@ -38,45 +29,6 @@ pub struct Enrichment {
     form: Form,
     ramp: Ramp,
     regions: Vec<Region>,
-}
-
-/// How the functions enter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    /// In the basis [EFG, section 5.3].
-    Intrinsic,
-    /// Times the shape functions of nodes [EFG, section 5.2].
-    OfNodes,
-    /// As they are, less what moving least squares make of them [EFG, section 5.1].
-    OfTips,
-}
-
-impl Form {
-    /// Largest outer radius of the region around a tip, and that if nothing is said [length].
-    ///
-    /// - `clear`: where the functions begin to jump beside the crack
-    fn outer_radii(self, model: &Model, id: TipId, clear: f64) -> [f64; 2] {
-        let crack = &model.cracks[id.crack];
-        let sharp = first_sharp_kink(crack, id.end);
-        match self {
-            Self::Intrinsic | Self::OfNodes => {
-                let free = free_radius(model, id.crack, crack.end_position(id.end));
-                [half_way(model, id).min(CLEARANCE * clear), sharp.min(OUTER_SHARE * free)]
-            }
-            // Regions may overlap, and no node has functions to lose. The nodes have to make up for the ramp: the wider
-            // the better.
-            Self::OfTips => [clear, sharp.min(clear)],
-        }
-    }
-
-    /// Inner radius if nothing is said [length].
-    fn inner_radius(self, outer: f64) -> f64 {
-        match self {
-            Self::Intrinsic | Self::OfNodes => INNER_SHARE * outer,
-            Self::OfTips if outer.is_finite() => 0.0,
-            Self::OfTips => outer,
-        }
-    }
 }
 
 /// A disk around a tip.
@@ -112,34 +64,40 @@ pub(super) struct Place {
 
 impl Enrichment {
     /// The regions of a model, and a remark on each that had to be made smaller than asked for.
-    pub fn of_model(model: &Model, settings: &EnrichmentSettings) -> (Option<Self>, Vec<String>) {
+    ///
+    /// - `spacings`: at each tip, in the order of [`Model::tips`]
+    pub fn of_model(
+        model: &Model,
+        settings: &EnrichmentSettings,
+        spacings: &[TipSpacing],
+    ) -> (Option<Self>, Vec<String>) {
         let (functions, form) = match settings.kind {
             EnrichmentKind::None => return (None, vec![]),
             EnrichmentKind::IntrinsicFull => (TipFunctions::Full, Form::Intrinsic),
             EnrichmentKind::IntrinsicRadial => (TipFunctions::Radial, Form::Intrinsic),
-            EnrichmentKind::ExtrinsicFull => (TipFunctions::Full, Form::OfNodes),
+            EnrichmentKind::Automatic | EnrichmentKind::ExtrinsicFull => (TipFunctions::Full, Form::OfNodes),
             EnrichmentKind::ExtrinsicRadial => (TipFunctions::Radial, Form::OfNodes),
             EnrichmentKind::ExtrinsicMls => (TipFunctions::Full, Form::OfTips),
         };
         let (mut regions, mut notes) = (vec![], vec![]);
-        for (id, frame) in model.tips() {
-            let clear = clear_radius(model, id);
-            let [limit, automatic] = form.outer_radii(model, id, clear);
-            let wanted = settings.r2.unwrap_or(automatic);
-            let outer = wanted.min(limit);
+        for ((id, frame), spacing) in model.tips().into_iter().zip(spacings) {
+            if settings.kind == EnrichmentKind::Automatic && !wants_functions(model, id, settings, *spacing) {
+                continue;
+            }
+            let RegionSize { radii, wanted, clear } = RegionSize::new(model, id, form, settings, spacing.at_tip);
+            let outer = radii[1];
             if settings.r2.is_some() && outer < wanted {
                 notes.push(format!(
                     "the enriched region around the tip at ({:.6}, {:.6}) would meet another tip or a bend of its crack; its radius is {outer:.4} instead of {wanted:.4}",
                     frame.position.x, frame.position.y
                 ));
             }
-            let inner = settings.r1.unwrap_or(form.inner_radius(outer)).min(outer);
             let reach = match form {
                 Form::Intrinsic | Form::OfTips => CUT_REACH * outer,
                 Form::OfNodes => clear,
             };
             let coordinates = TipCoordinates::new(&model.cracks[id.crack], id.end, reach, 0.0);
-            regions.push(Region { coordinates, radii: [inner, outer], clear, values: FxHashMap::default() });
+            regions.push(Region { coordinates, radii, clear, values: FxHashMap::default() });
         }
         ((!regions.is_empty()).then_some(Self { functions, form, ramp: settings.ramp, regions }), notes)
     }
@@ -152,6 +110,11 @@ impl Enrichment {
     /// Tip, inner and outer radius of each region [length].
     pub fn regions(&self) -> impl Iterator<Item = (Vector2, [f64; 2])> + '_ {
         self.regions.iter().map(|r| (r.coordinates.tip(), r.radii))
+    }
+
+    /// Coordinates at the tip of each region.
+    pub fn coordinates(&self) -> impl Iterator<Item = &TipCoordinates> {
+        self.regions.iter().map(|r| &r.coordinates)
     }
 
     /// Whether a node with the given support reaches into a region.
@@ -260,6 +223,41 @@ impl Enrichment {
     }
 }
 
+impl ApproximationSettings {
+    /// These settings with automatic enrichment decided: the smoothing that goes with it, or none.
+    ///
+    /// - `spacings`: at each tip, in the order of [`Model::tips`]
+    pub fn decided(&self, model: &Model, spacings: &[TipSpacing]) -> Self {
+        const ROUND_TIPS: CrackSmoothing = CrackSmoothing::Diffraction { lambda: 1.0 };
+        if self.enrichment.kind != EnrichmentKind::Automatic {
+            return *self;
+        }
+        let around_holes = match self.smoothing.holes() {
+            HoleSmoothing::Diffraction { lambda } => lambda == 1.0,
+            HoleSmoothing::Visibility | HoleSmoothing::SeeThrough => true,
+        };
+        let suits = self.support == SupportShape::Circular
+            && self.basis == Basis::Linear
+            && around_holes
+            && self.smoothing.cracks.is_none_or(|c| c == ROUND_TIPS);
+        let tips = model.tips().into_iter().zip(spacings);
+        let wants = |id, spacing: TipSpacing| wants_functions(model, id, &self.enrichment, spacing);
+        if !suits || !tips.into_iter().any(|((id, _), spacing)| wants(id, *spacing)) {
+            return self.without_automatic_enrichment();
+        }
+        Self { smoothing: SmoothingSettings { cracks: Some(ROUND_TIPS), ..self.smoothing }, ..*self }
+    }
+
+    /// These settings with no enrichment where it is left to choose.
+    pub fn without_automatic_enrichment(&self) -> Self {
+        let mut result = *self;
+        if result.enrichment.kind == EnrichmentKind::Automatic {
+            result.enrichment.kind = EnrichmentKind::None;
+        }
+        result
+    }
+}
+
 /// The tip functions around a point. A buffer.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TipPoint {
@@ -306,59 +304,6 @@ impl Ramp {
     }
 }
 
-/// Half of the way from a tip to the nearest other one [length].
-fn half_way(model: &Model, id: TipId) -> f64 {
-    let tip = model.cracks[id.crack].end_position(id.end);
-    let others = model.tips().into_iter().map(|(_, frame)| frame.position).filter(|p| *p != tip);
-    others.map(|p| SHARED * (p - tip).norm()).fold(f64::INFINITY, f64::min)
-}
-
-/// Radius of the largest disk around a tip in which its functions jump across its own crack only [length].
-fn clear_radius(model: &Model, id: TipId) -> f64 {
-    let crack = &model.cracks[id.crack];
-    let tip = crack.end_position(id.end);
-    let far = match id.end {
-        End::Start => End::End,
-        End::End => End::Start,
-    };
-    // The cut goes on straight from the far end.
-    let leaves = match crack.end_kind(far) {
-        EndKind::Tip | EndKind::Junction => (crack.end_position(far) - tip).norm(),
-        EndKind::Mouth => {
-            let path = crack.from_end(far);
-            let way = through_void(model, path[0], path[0] - path[1]);
-            // That far there is no body left to jump in.
-            let leaves_body = way.norm() > 0.999 * model.domain.aabb().size().norm();
-            if leaves_body { f64::INFINITY } else { (path[0] + way - tip).norm() }
-        }
-    };
-    leaves.min(first_fold(crack, id.end))
-}
-
-/// Distance from a tip to the first kink around which its functions cannot be mapped: one that turns too far, or that
-/// has nearer parts of the crack behind its perpendicular [length].
-fn first_fold(crack: &CrackPath, end: End) -> f64 {
-    let path = crack.from_end(end);
-    for k in 1..path.len() - 1 {
-        let (ahead, on) = (path[k - 1] - path[k], path[k] - path[k + 1]);
-        let turn = cross(on, ahead).atan2(on.dot(&ahead));
-        if turn.abs() >= LARGEST_TURN || path[..k].iter().any(|p| (p - path[k]).dot(&ahead) < 0.0) {
-            return (path[k] - path[0]).norm();
-        }
-    }
-    f64::INFINITY
-}
-
-/// Distance from a tip to the first kink that is sharp [length].
-fn first_sharp_kink(crack: &CrackPath, end: End) -> f64 {
-    let path = crack.from_end(end);
-    let is_sharp = |w: &&[Vector2]| {
-        let (ahead, on) = (w[0] - w[1], w[1] - w[2]);
-        cross(on, ahead).atan2(on.dot(&ahead)).abs() > SHARP_TURN
-    };
-    path.windows(3).find(is_sharp).map_or(f64::INFINITY, |w| (w[1] - path[0]).norm())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -377,21 +322,5 @@ mod tests {
         }
         // The quintic ramp leaves no kink at its ends.
         assert!(Ramp::Quintic.polynomial(1.0)[1].abs() < 1e-15 && Ramp::Quintic.polynomial(1.0)[2].abs() < 1e-15);
-    }
-
-    #[test]
-    fn regions_end_where_the_crack_folds() {
-        let crack = |points: &[(f64, f64)]| CrackPath {
-            name: "c".into(),
-            vertices: points.iter().map(|p| Vector2::new(p.0, p.1)).collect(),
-            ends: [EndKind::Tip; 2],
-        };
-        let gentle = crack(&[(-2.0, 0.0), (-1.0, 0.0), (0.0, 0.5)]);
-        assert_eq!(first_fold(&gentle, End::End), f64::INFINITY);
-        let right_angle = crack(&[(-2.0, 0.0), (-1.0, 0.0), (-1.0, 0.5)]);
-        assert_eq!(first_fold(&right_angle, End::End), 0.5);
-        // Turns by 60° three times and goes on until the perpendicular at the first vertex passes before the tip.
-        let hook = crack(&[(0.0, 0.0), (1.0, 0.0), (1.5, 3f64.sqrt() / 2.0), (1.0, 3f64.sqrt()), (-2.5, 3f64.sqrt())]);
-        assert!((first_fold(&hook, End::End) - (hook.vertices[4] - hook.vertices[1]).norm()).abs() < 1e-12);
     }
 }

@@ -6,6 +6,7 @@ use super::discontinuity::Barriers;
 use super::enriched_fit::fit_enriched_into;
 use super::enrichment::{Enrichment, EnrichmentBuffer, Place, TipPoint};
 use super::extra::Extra;
+use super::finite_elements::{FiniteElements, JoinedElement};
 use super::mls::{Neighborhood, fit_into, quality};
 use super::settings::{ApproximationSettings, SupportShape, WeightFunction};
 use super::sight::{Candidate, Sight, SightBuffer, View};
@@ -46,6 +47,8 @@ pub struct Surroundings {
     /// Regions around tips.
     enrichment: EnrichmentBuffer,
     tip: TipPoint,
+    /// Finite elements that may hold a point.
+    elements: Vec<u32>,
     /// Plain shape functions, where they are joined to enriched ones.
     plain: ShapeFunctions<2>,
 }
@@ -59,6 +62,7 @@ pub struct MovingLeastSquares {
     supports: BoxTree<2>,
     enrichment: Option<Enrichment>,
     extra: Option<Extra>,
+    elements: Option<FiniteElements>,
 }
 
 impl MovingLeastSquares {
@@ -67,7 +71,7 @@ impl MovingLeastSquares {
         let boxes: Vec<_> =
             nodes.positions.iter().zip(&nodes.support_radii).map(|(p, r)| Aabb::around(*p, *r)).collect();
         let (supports, sight) = (BoxTree::new(&boxes), Sight::new(barriers.into(), &nodes));
-        Self { supports, sight, nodes, settings, enrichment: None, extra: None }
+        Self { supports, sight, nodes, settings, enrichment: None, extra: None, elements: None }
     }
 
     /// Adds the functions of tips, to the basis around them or to the nodes there.
@@ -78,6 +82,21 @@ impl MovingLeastSquares {
             enrichment.extra_functions(&self.nodes)
         });
         self
+    }
+
+    /// Joins finite elements to the nodes.
+    pub fn coupled(self, elements: Option<FiniteElements>) -> Self {
+        Self { elements, ..self }
+    }
+
+    /// The finite elements, if there are any.
+    pub fn elements(&self) -> Option<&FiniteElements> {
+        self.elements.as_ref()
+    }
+
+    /// The finite element around a point that was surveyed.
+    pub fn element_at(&self, sight: Vector2, around: &Surroundings) -> Option<&JoinedElement> {
+        self.elements.as_ref()?.find(sight, &around.elements)
     }
 
     /// Number of functions: one of each node, and the additional ones of enriched nodes.
@@ -136,6 +155,9 @@ impl MovingLeastSquares {
         self.sight.survey(&reach, &around.candidates, &mut around.sight);
         if let Some(enrichment) = &self.enrichment {
             enrichment.survey(bounds, &mut around.enrichment);
+        }
+        if let Some(elements) = &self.elements {
+            elements.survey(bounds, &mut around.elements);
         }
         let [xs, ys] = &mut around.positions;
         xs.clear();
@@ -257,6 +279,11 @@ impl MovingLeastSquares {
         around: &mut Surroundings,
         shape: &mut ShapeFunctions<2>,
     ) -> Result<()> {
+        let element = self.element_at(sight, around);
+        if let Some(element) = element.filter(|e| e.is_plain()) {
+            element.fill(at, derivatives, shape);
+            return Ok(());
+        }
         self.gather(at, sight, derivatives, around);
         let fits = match self.place(at, around) {
             Some(place) => self.fit_in_region(&place, [at, sight], around, shape),
@@ -267,6 +294,9 @@ impl MovingLeastSquares {
         }
         if let Some(extra) = &self.extra {
             extra.append([at, sight], shape);
+        }
+        if let Some(element) = element {
+            element.join(at, shape);
         }
         Ok(())
     }

@@ -65,7 +65,7 @@ impl ExtraFunctions {
         let mut result =
             Self { functions, regions, own_of: vec![NONE; nodes.len()], owns: vec![], n_functions: nodes.len() };
         for (i, p) in nodes.positions.iter().enumerate() {
-            let reach = nodes.support_radii[i].norm();
+            let reach = nodes.support_radii[i].max();
             let holds = |r: &ExtraRegion| {
                 let distance = (p - r.coordinates.tip()).norm();
                 distance < r.outer && distance + reach < r.clear
@@ -287,8 +287,8 @@ mod tests {
         let region = ExtraRegion { coordinates, outer: 0.5, clear: 0.9 };
         let extra = ExtraFunctions::new(TipFunctions::Full, vec![region], &nodes);
         for (i, p) in nodes.positions.iter().enumerate() {
-            // The corner of the box around a support, a little outside of the support itself.
-            let expected = (p - tip).norm() < 0.5 && (p - tip).norm() + 0.4 * 2f64.sqrt() < 0.9;
+            // Supports are disks of radius 0.4.
+            let expected = (p - tip).norm() < 0.5 && (p - tip).norm() + 0.4 < 0.9;
             assert_eq!(extra.of_node(i as u32).len(), if expected { 4 } else { 0 }, "{p}");
         }
     }

@@ -22,6 +22,11 @@ pub struct ApproximationSettings {
     pub smoothing: SmoothingSettings,
     /// The field of the tip in the basis near crack tips.
     pub enrichment: EnrichmentSettings,
+    /// Distance from cracks beyond which shape functions are those of finite elements between the nodes, joined to moving
+    /// least squares by a ramp of one element [length] [Belytschko1995]; nowhere if not given. Bilinear on regular nodes,
+    /// linear on others: cheaper, less accurate.
+    #[schemars(range(min = 0.0))]
+    pub finite_elements_beyond: Option<f64>,
 }
 
 impl Default for ApproximationSettings {
@@ -34,6 +39,7 @@ impl Default for ApproximationSettings {
             spacing_from: SpacingFrom::Automatic,
             smoothing: SmoothingSettings::default(),
             enrichment: EnrichmentSettings::default(),
+            finite_elements_beyond: None,
         }
     }
 }
@@ -62,7 +68,7 @@ impl ApproximationSettings {
             | EnrichmentKind::ExtrinsicFull
             | EnrichmentKind::ExtrinsicRadial
             | EnrichmentKind::ExtrinsicMls => true,
-            EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => false,
+            EnrichmentKind::Automatic | EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => false,
         };
         if wants_diffraction && given.cracks.is_none() {
             given.cracks = Some(CrackSmoothing::Diffraction { lambda: 1.0 });
@@ -157,7 +163,8 @@ pub struct EnrichmentSettings {
     #[schemars(range(min = 0.0))]
     pub r1: Option<f64>,
     /// Distance from a tip at which only plain shape functions are left [length]; half of the distance to boundaries,
-    /// other cracks and the far end of the crack if not given, or that to a sharp kink. Regions never overlap. With
+    /// other cracks and the far end of the crack if not given, but at least 2 node spacings, or 6 where the basis is
+    /// enriched; never farther than to a sharp kink. Regions never overlap. With
     /// `extrinsic-mls` they may, and end at a sharp kink or where the crack does if not given: nowhere for an edge crack.
     #[schemars(range(min = 0.0))]
     pub r2: Option<f64>,
@@ -174,7 +181,8 @@ impl EnrichmentSettings {
         self.dilation.unwrap_or(match self.kind {
             EnrichmentKind::IntrinsicFull if is_regular => 3.2,
             EnrichmentKind::IntrinsicFull => 2.75,
-            EnrichmentKind::None
+            EnrichmentKind::Automatic
+            | EnrichmentKind::None
             | EnrichmentKind::IntrinsicRadial
             | EnrichmentKind::ExtrinsicFull
             | EnrichmentKind::ExtrinsicRadial
@@ -187,8 +195,12 @@ impl EnrichmentSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum EnrichmentKind {
-    /// None: polynomials only.
+    /// `extrinsic-full` at each tip where nodes are coarse: as far apart as elsewhere, and by more than a hundredth of the
+    /// distance to whatever else is there, as regular nodes are. The default nodes are finer at tips. None with an accuracy to meet, cracking particles, nodal
+    /// integration, a quadratic basis, rectangular supports or another smoothing around cracks than diffraction with λ = 1.
     #[default]
+    Automatic,
+    /// None: polynomials only.
     None,
     /// Four functions that span the displacements at a tip in both modes, in the basis (5.3.1).
     IntrinsicFull,

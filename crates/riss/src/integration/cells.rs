@@ -10,6 +10,7 @@ use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::{Vector2, cross, turn_left};
 use crate::model::Domain;
 use crate::nodes::Triangulation;
+use crate::nodes::elements::{Element, arcs, left_of};
 use crate::nodes::triangulation::SIGHT_SHIFT;
 use rustc_hash::FxHashMap;
 use std::ops::Range;
@@ -78,18 +79,15 @@ impl IntegrationCells {
         merge: bool,
         settings: &IntegrationSettings,
     ) -> Self {
+        let elements = match merge {
+            true => Element::joined(triangulation, domain),
+            false => Element::triangles(triangulation),
+        };
         let mut builder = Builder::new(triangulation, domain, tips, settings);
-        let mut done = vec![false; triangulation.triangles.len()];
-        for i in 0..triangulation.triangles.len() {
-            if std::mem::replace(&mut done[i], true) {
-                continue;
-            }
-            match merge.then(|| builder.rectangle_with(i, &done)).flatten() {
-                Some((other, corners)) => {
-                    done[other] = true;
-                    builder.add_rectangle(corners);
-                }
-                None => builder.add_triangle(triangulation.triangles[i]),
+        for element in elements {
+            match element {
+                Element::Rectangle(corners) => builder.add_rectangle(corners),
+                Element::Triangle(corners) => builder.add_triangle(corners),
             }
         }
         builder.cells
@@ -152,29 +150,6 @@ impl<'a> Builder<'a> {
             square_at_tip: settings.tip_points,
             cells: IntegrationCells::default(),
         }
-    }
-
-    /// The neighbor of triangle `i` with which it forms a rectangle, and the corners.
-    fn rectangle_with(&self, i: usize, done: &[bool]) -> Option<(usize, [u32; 4])> {
-        let t = self.triangulation.triangles[i];
-        for k in 0..3 {
-            let [a, b, c] = [t[k], t[(k + 1) % 3], t[(k + 2) % 3]];
-            let Some(&other) = self.left_of.get(&[c, b]) else { continue };
-            if done[other as usize] {
-                continue;
-            }
-            let d = self.triangulation.triangles[other as usize].into_iter().find(|v| *v != b && *v != c)?;
-            let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.triangulation.position(v));
-            let (u, v) = (pb - pa, pc - pa);
-            let small = 1e-9 * (u.norm() + v.norm());
-            let is_rectangle = (pa + u + v - pd).norm() < small && u.dot(&v).abs() < small * u.norm();
-            let corners = [a, b, d, c];
-            let curved = (0..4).any(|k| self.arcs.contains_key(&[corners[k], corners[(k + 1) % 4]]));
-            if is_rectangle && !curved {
-                return Some((other as usize, corners));
-            }
-        }
-        None
     }
 
     fn add_rectangle(&mut self, corners: [u32; 4]) {
@@ -281,21 +256,6 @@ pub(super) fn rule_at_tip(settings: &IntegrationSettings) -> Vec<([f64; 3], f64)
         TipRule::Automatic | TipRule::Product => collapsed_rule(settings.tip_points),
         TipRule::Graded => graded_rule(settings.tip_points),
     }
-}
-
-/// Curved boundary pieces by the copies at their ends.
-pub(super) fn arcs(triangulation: &Triangulation, domain: &Domain) -> FxHashMap<[u32; 2], Curve> {
-    let curved = triangulation.boundary.iter().filter(|s| matches!(domain.edges[s.edge], Curve::Arc { .. }));
-    curved.map(|s| (s.points, domain.edges[s.edge].piece(s.range[0], s.range[1]))).collect()
-}
-
-/// The triangle to the left of each directed edge.
-pub(super) fn left_of(triangulation: &Triangulation) -> FxHashMap<[u32; 2], u32> {
-    let sides = |(i, t): (usize, &[u32; 3])| {
-        let t = *t;
-        (0..3).map(move |k| ([t[k], t[(k + 1) % 3]], i as u32))
-    };
-    triangulation.triangles.iter().enumerate().flat_map(sides).collect()
 }
 
 /// Positions and weights along an edge of the boundary or of a crack, from 0 to 1; those of cells lie there, too.

@@ -5,12 +5,13 @@
 //! functions through them cancel inside the body, and linear patch tests hold to round-off.
 
 use super::IntegrationPoint;
-use super::cells::{EdgePoint, IntegrationCells, Smoothing, arcs, edge_rule, left_of};
+use super::cells::{EdgePoint, IntegrationCells, Smoothing, edge_rule};
 use super::settings::IntegrationSettings;
 use crate::geometry::curve::Curve;
 use crate::math::{Vector2, turn_left};
 use crate::model::Domain;
 use crate::nodes::Triangulation;
+use crate::nodes::elements::{arcs, left_of};
 use crate::nodes::triangulation::SIGHT_SHIFT;
 use rustc_hash::FxHashMap;
 

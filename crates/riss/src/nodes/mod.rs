@@ -8,6 +8,7 @@ mod budget;
 pub mod chains;
 pub mod cloud;
 mod crack_clearance;
+pub mod elements;
 pub mod fill;
 pub mod generation;
 mod ligaments;

@@ -4,10 +4,11 @@
 use super::block_matrix::LocalMatrix;
 use super::discretization::{Discretization, NodeLists};
 use super::galerkin::{Scratch, for_each_local};
-use super::settings::ConstraintMethod;
+use super::settings::{ConstraintMethod, NITSCHE_FACTOR};
 use crate::approximation::ShapeFunctions;
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::error::Result;
+use crate::geometry::curve::Curve;
 use crate::integration::{BoundaryElement, BoundaryPoint};
 use crate::material::Elasticity;
 use crate::math::Vector2;
@@ -20,6 +21,7 @@ pub struct Supports<'a> {
     loads: Vec<Vec<&'a BoundaryLoad>>,
     supports: Vec<Vec<&'a BoundarySupport>>,
     springs: Vec<Vec<&'a Spring>>,
+    is_curved: Vec<bool>,
     method: ConstraintMethod,
 }
 
@@ -41,7 +43,8 @@ impl<'a> Supports<'a> {
         for spring in &model.springs {
             domain.parts[spring.part].edges.iter().for_each(|&e| springs[e].push(spring));
         }
-        Self { loads, supports, springs, method: *method }
+        let is_curved = domain.edges.iter().map(|e| matches!(e, Curve::Arc { .. })).collect();
+        Self { loads, supports, springs, is_curved, method: *method }
     }
 
     /// Supports on an edge.
@@ -57,6 +60,11 @@ impl<'a> Supports<'a> {
             ConstraintMethod::Penalty { factor } => (false, factor * stiffness),
             ConstraintMethod::ModifiedVariational => (true, 0.0),
             ConstraintMethod::LagrangeMultipliers => (false, 0.0),
+            // What is prescribed at nodes leaves a gap between a chord and its arc.
+            ConstraintMethod::FiniteElementCoupled if self.is_curved[element.edge] => {
+                (true, NITSCHE_FACTOR * stiffness)
+            }
+            ConstraintMethod::FiniteElementCoupled => (false, 0.0),
         }
     }
 }
@@ -109,7 +117,7 @@ pub fn boundary_matrix(
             add_term(local, nodes, shape, spring.direction.vector(&at), stiffness, None, 0.0);
         }
         for support in &on.supports[edge] {
-            if on.method == ConstraintMethod::LagrangeMultipliers {
+            if !with_traction && stabilization == 0.0 {
                 continue;
             }
             let direction = support.direction.vector(&at);

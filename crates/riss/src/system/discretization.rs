@@ -1,22 +1,28 @@
 //! Everything discrete about a body, read-only once built: nodes, supports, cells, neighbor lists.
 
+use super::constraints::Supports;
 use super::safeguard::{Parts, safeguard};
+use super::settings::ConstraintMethod;
 use crate::approximation::discontinuity::{Barriers, barriers, visibility_obstacles};
+use crate::approximation::enrichment::TipSpacing;
 use crate::approximation::moving_least_squares::{Derivatives, support_radii};
 use crate::approximation::{
-    ApproximationSettings, CrackSmoothing, Enrichment, MovingLeastSquares, SpacingFrom, Surroundings,
+    ApproximationSettings, CrackSmoothing, Enrichment, FiniteElements, MovingLeastSquares, SpacingFrom, Surroundings,
 };
-use crate::crack::CrackParticles;
+use crate::crack::{CrackParticles, CrackPath};
 use crate::error::Result;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
+use crate::geometry::predicates::distance_to_segment;
 use crate::integration::{
     BoundaryElement, CrackFaceElement, GradientCorrection, IntegrationCells, IntegrationSettings, Scheme, TipRule,
     boundary_elements, crack_face_elements,
 };
 use crate::math::Vector2;
 use crate::model::Model;
+use crate::nodes::elements::Element;
 use crate::nodes::support::neighbor_distances;
+use crate::nodes::triangulation::PointCopy;
 use crate::nodes::{Layered, Nodes, Triangulation};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -99,15 +105,33 @@ impl Discretization {
         layered: Layered,
         approximation: &ApproximationSettings,
         integration: &IntegrationSettings,
+        constraints: &ConstraintMethod,
     ) -> Result<Self> {
-        let Layered { chains, triangulation, grid_step, particles } = layered;
+        let Layered { mut chains, triangulation, grid_step, particles } = layered;
+        let elements = match grid_step {
+            Some(_) => Element::joined(&triangulation, &model.domain),
+            None => Element::triangles(&triangulation),
+        };
+        let is_meshfree = meshfree_copies(model, &triangulation, approximation, constraints);
+        for element in elements.iter().filter(|e| e.corners().iter().any(|c| !is_meshfree[*c as usize])) {
+            // Its functions belong to nodes.
+            element
+                .corners()
+                .iter()
+                .for_each(|c| chains.is_node[triangulation.copies[*c as usize].point as usize] = true);
+        }
         let (mut nodes, mut node_of_copy) = nodes_of(&triangulation, &chains.is_node);
         let seen = &as_particles_say(model, &particles);
         let obstacles = visibility_obstacles(seen, &triangulation);
+        set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
+        let spacings = TipSpacing::of_tips(model, &nodes, approximation.dilation(grid_step.is_some()));
+        let approximation = &match integration.scheme {
+            Scheme::Elements | Scheme::Cells { .. } => approximation.decided(model, &spacings),
+            Scheme::Nodal { .. } => approximation.without_automatic_enrichment(),
+        };
         let smoothing = approximation.resolved_smoothing();
         let barriers = barriers(seen, &triangulation, &smoothing);
-        let (enrichment, notes) = Enrichment::of_model(model, &approximation.enrichment);
-        set_supports(&mut nodes, &triangulation, &node_of_copy, &obstacles, approximation, grid_step);
+        let (enrichment, notes) = Enrichment::of_model(model, &approximation.enrichment, &spacings);
         if let Some(enrichment) = &enrichment {
             enlarge_in_regions(&mut nodes, enrichment, approximation, grid_step);
         }
@@ -132,7 +156,9 @@ impl Discretization {
             cells.drop_outlines();
         }
         let boundary = boundary_elements(&triangulation, &model.domain, integration);
-        let start = MovingLeastSquares::new(nodes, barriers.clone(), *approximation).enriched(enrichment);
+        let elements = FiniteElements::new(&elements, &triangulation, &model.domain, &is_meshfree, &node_of_copy);
+        let start =
+            MovingLeastSquares::new(nodes, barriers.clone(), *approximation).enriched(enrichment).coupled(elements);
         let crack_faces = crack_face_elements(model, &chains, integration);
         let parts = Parts { cells: &cells, boundary: &boundary, crack_faces: &crack_faces };
         let (approximation, lists) = safeguard(start, obstacles, &barriers, &parts)?;
@@ -186,6 +212,30 @@ fn as_particles_say<'m>(model: &'m Model, particles: &[CrackParticles]) -> Cow<'
         [] => Cow::Borrowed(model),
         _ => Cow::Owned(Model { cracks: particles.iter().map(CrackParticles::union).collect(), ..model.clone() }),
     }
+}
+
+/// Which copies of points stand among meshfree nodes: those that are not on supports with elements along them, nor
+/// farther from all cracks than elements begin.
+fn meshfree_copies(
+    model: &Model,
+    triangulation: &Triangulation,
+    approximation: &ApproximationSettings,
+    constraints: &ConstraintMethod,
+) -> Vec<bool> {
+    let beyond = approximation.finite_elements_beyond.unwrap_or(f64::INFINITY);
+    let is_near = |copy: &PointCopy| {
+        let p = triangulation.positions[copy.point as usize];
+        let mut segments = model.cracks.iter().flat_map(CrackPath::segments);
+        beyond.is_infinite() || segments.any(|(a, b)| distance_to_segment(p, a, b) <= beyond)
+    };
+    let mut result: Vec<bool> = triangulation.copies.iter().map(is_near).collect();
+    if *constraints == ConstraintMethod::FiniteElementCoupled {
+        let on = Supports::new(model, constraints);
+        for segment in triangulation.boundary.iter().filter(|s| !on.on(s.edge).is_empty()) {
+            segment.points.iter().for_each(|copy| result[*copy as usize] = false);
+        }
+    }
+    result
 }
 
 fn nodes_of(triangulation: &Triangulation, is_node: &[bool]) -> (Nodes<2>, Vec<Option<u32>>) {

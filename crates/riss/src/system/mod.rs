@@ -11,6 +11,7 @@ pub mod constraints;
 pub mod crack_faces;
 pub mod discretization;
 pub mod galerkin;
+mod held_nodes;
 pub mod incomplete_factor;
 pub mod krylov;
 pub mod linear_solver;
@@ -22,7 +23,7 @@ mod safeguard;
 pub mod settings;
 pub mod solve;
 pub mod sparse_lu;
-mod tip_factors;
+pub mod tip_factors;
 
 pub use collocation::{Collocation, CollocationSystem};
 pub use collocation_settings::{CollocationSettings, CollocationSolver, ConcaveCorners, FrontNodes};

@@ -59,7 +59,14 @@ fn inspect(
 ) -> Inspection {
     let mut result = Inspection::default();
     let mut seen = vec![false; around.candidates.len()];
+    let mut corners: Vec<u32> = vec![];
     for (at, sight) in views {
+        if let Some(element) = approximation.element_at(sight, around) {
+            corners.extend_from_slice(element.nodes());
+            if element.is_plain() {
+                continue;
+            }
+        }
         approximation.gather(at, sight, Derivatives::First, around);
         let mut k = 0;
         for &i in &around.near.nodes {
@@ -78,6 +85,11 @@ fn inspect(
     }
     let visible = around.candidates.iter().zip(&seen).filter(|(_, seen)| **seen);
     result.neighbors = visible.map(|(i, _)| *i).collect();
+    if !corners.is_empty() {
+        result.neighbors.append(&mut corners);
+        result.neighbors.sort_unstable();
+        result.neighbors.dedup();
+    }
     approximation.append_functions(&mut result.neighbors);
     result
 }
@@ -135,8 +147,10 @@ pub(super) fn safeguard(
                 let mut grown = vec![false; nodes.len()];
                 poor().for_each(|p| enlarge_around(&mut nodes, &obstacles, &tree, p, &mut grown));
                 suspects = suspects.iter().zip(&found).filter(|(_, f)| !f.poor.is_empty()).map(|(i, _)| *i).collect();
-                let (settings, enrichment) = (*approximation.settings(), approximation.enrichment().cloned());
-                approximation = MovingLeastSquares::new(nodes, barriers.clone(), settings).enriched(enrichment);
+                let (settings, elements) = (*approximation.settings(), approximation.elements().cloned());
+                let enrichment = approximation.enrichment().cloned();
+                let larger = MovingLeastSquares::new(nodes, barriers.clone(), settings);
+                approximation = larger.enriched(enrichment).coupled(elements);
                 continue;
             }
         }

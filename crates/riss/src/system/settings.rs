@@ -25,12 +25,18 @@ pub enum ConstraintMethod {
     },
     /// Multipliers replaced by the boundary traction (Eq. 27); may lose definiteness.
     ModifiedVariational,
+    /// A row of finite elements along the supports, joined to the nodes behind by a ramp: displacements are prescribed at the
+    /// nodes, and linear between them [Krongauz1996; Belytschko1995]. Arcs are held by Nitsche's method besides, as straight elements
+    /// leave a gap there.
+    FiniteElementCoupled,
 }
 
 /// The least factor that is stable on irregular nodes lies between 5 and 10 for the linear basis, between 10 and 20 for
 /// the quadratic one; up to 100 the error does not depend on it.
+pub(super) const NITSCHE_FACTOR: f64 = 40.0;
+
 fn default_nitsche_factor() -> f64 {
-    40.0
+    NITSCHE_FACTOR
 }
 
 fn default_penalty_factor() -> f64 {

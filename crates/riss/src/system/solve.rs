@@ -4,6 +4,7 @@ use super::block_matrix::BlockMatrix;
 use super::constraints::{ConstraintRow, Supports, multiplier_rows, point_rows};
 use super::discretization::Discretization;
 use super::galerkin::LinearSystem;
+use super::held_nodes::HeldNodes;
 use super::node_solver::{NodeSolver, Part};
 use super::ordering::nested_dissection;
 use super::rigid_motion::{BalancingForce, MeanMotion, check_held};
@@ -11,7 +12,7 @@ use super::settings::{ConstraintMethod, LinearSolver};
 use super::tip_factors::Border;
 use crate::error::{Error, Result};
 use crate::math::Vector2;
-use crate::model::{Model, RigidMotion};
+use crate::model::{Model, PartId, RigidMotion};
 
 /// Largest relative residual of an accepted solution.
 pub const ALLOWED_RESIDUAL: f64 = 1e-8;
@@ -27,6 +28,9 @@ pub struct Solution {
     pub multipliers: Vec<f64>,
     /// Forces of point supports, per thickness, row by row.
     pub point_forces: Vec<f64>,
+    /// Forces of held nodes on the body, per thickness, with the part that each belongs to; with finite elements along the
+    /// supports.
+    pub support_forces: Vec<(PartId, Vector2)>,
     /// K_I and K_II of each tip, where they are unknowns themselves [stress·√length]; in the order of [`Model::tips`].
     pub tip_factors: Vec<[f64; 2]>,
     /// Contact pressure at the knots along cracks [stress]; empty without contact.
@@ -52,6 +56,12 @@ pub fn solve(
     method: &ConstraintMethod,
     solver: LinearSolver,
 ) -> Result<Solution> {
+    let on = Supports::new(model, method);
+    let held = match method {
+        ConstraintMethod::FiniteElementCoupled => Some(HeldNodes::hold(model, discrete, &on, &mut system)),
+        ConstraintMethod::LagrangeMultipliers | ConstraintMethod::ModifiedVariational => None,
+        ConstraintMethod::Nitsche { .. } | ConstraintMethod::Penalty { .. } => None,
+    };
     let mut border = Border::take(&model.material, discrete, &mut system);
     let loose = check_held(model, discrete, &system.matrix, &system.load)?;
     let stiffness = system.matrix.largest_diagonal();
@@ -78,12 +88,15 @@ pub fn solve(
         pin(&mut system.matrix, positions, &loose);
     }
     let mut rows = match method {
-        ConstraintMethod::LagrangeMultipliers => multiplier_rows(model, discrete, &Supports::new(model, method))?,
-        ConstraintMethod::ModifiedVariational => vec![],
+        ConstraintMethod::LagrangeMultipliers => multiplier_rows(model, discrete, &on)?,
+        ConstraintMethod::ModifiedVariational | ConstraintMethod::FiniteElementCoupled => vec![],
         ConstraintMethod::Nitsche { .. } | ConstraintMethod::Penalty { .. } => vec![],
     };
     let n_supports = rows.len();
     rows.extend(point_rows(model, discrete)?);
+    if let Some(held) = &held {
+        held.turn_rows(&mut rows, discrete.n_nodes());
+    }
     if let Some(border) = &mut border {
         border.take_from_rows(&mut rows);
     }
@@ -95,6 +108,9 @@ pub fn solve(
     let extra = solve_rows(&mut system, &nodes, &mut rows, border.as_ref(), &mut result)?;
     result.point_forces = result.multipliers.split_off(n_supports).iter().map(|m| -m).collect();
     result.parameters.extend(extra);
+    if let Some(held) = &held {
+        held.finish(&mut result);
+    }
     if let Some(mean) = &mean {
         mean.remove_mean(positions, &mut result.parameters);
     }

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 
 /// Parameters of the functions of a tip per unit of K_I and of K_II: the displacement at a tip [Williams1957] in the
 /// functions of [EFG, Eq. 50].
-fn unit_fields(material: &Elasticity, angle: f64) -> [[Vector2; MOST_FUNCTIONS]; 2] {
+pub fn unit_fields(material: &Elasticity, angle: f64) -> [[Vector2; MOST_FUNCTIONS]; 2] {
     let (ahead, kappa) = (direction(angle), material.kolosov());
     let factor = 1.0 / (2.0 * material.shear() * (2.0 * PI).sqrt());
     let vector = |x: f64, y: f64| (ahead * x + turn_left(ahead) * y) * factor;

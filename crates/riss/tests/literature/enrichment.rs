@@ -49,13 +49,14 @@ pub(super) fn grid(nx: usize, ny: usize, kind: EnrichmentKind) -> Settings {
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Structured(Structured { nx, ny });
     settings.approximation.enrichment.kind = kind;
-    settings.approximation.smoothing.cracks = Some(match kind {
+    settings.approximation.smoothing.cracks = match kind {
+        EnrichmentKind::Automatic => None,
         EnrichmentKind::IntrinsicFull
         | EnrichmentKind::ExtrinsicFull
         | EnrichmentKind::ExtrinsicRadial
-        | EnrichmentKind::ExtrinsicMls => CrackSmoothing::Diffraction { lambda: 1.0 },
-        EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => CrackSmoothing::Visibility,
-    });
+        | EnrichmentKind::ExtrinsicMls => Some(CrackSmoothing::Diffraction { lambda: 1.0 }),
+        EnrichmentKind::None | EnrichmentKind::IntrinsicRadial => Some(CrackSmoothing::Visibility),
+    };
     settings
 }
 
@@ -121,9 +122,10 @@ fn belytschko_1997_figure_42_settings_of_the_paper() {
     }
 }
 
-/// On 9 x 9 nodes a region of half the width holds too few nodes; on finer grids it does as well.
+/// On coarse grids the region is six spacings wide, on finer ones half of the square.
 #[test]
 fn automatic_region_on_a_grid() {
+    check_square([1.0, 1.0], &grid(9, 9, EnrichmentKind::IntrinsicFull), [0.003; 2]);
     check_square([1.0, 0.0], &grid(17, 17, EnrichmentKind::IntrinsicFull), [0.002, 1e-8]);
     check_square([1.0, 0.0], &grid(25, 25, EnrichmentKind::IntrinsicFull), [0.0005, 1e-8]);
 }
@@ -262,6 +264,34 @@ fn shear_plate_converges_below_3000_nodes_to_a_tenth_percent() {
             assert!((k.unwrap() / reference - 1.0).abs() <= bound, "{nx} x {ny}: {k:?} of {reference}");
         }
     }
+}
+
+/// Nothing but the number of nodes is said: the tip is enriched as the nodes are coarse. The bars hold the errors.
+#[test]
+fn belytschko_1997_table_1_with_defaults_on_even_nodes() {
+    for ([nx, ny], bound) in [([5, 11], 0.005), ([11, 29], 0.005), ([21, 49], 0.001), ([31, 71], 0.001)] {
+        let mut settings = Settings::default();
+        settings.nodes.layout = Layout::Structured(Structured { nx, ny });
+        let result = solve(&plate(), &settings);
+        assert!(result.n_nodes < 3000);
+        let found = tips(&result)[0];
+        let size = REFERENCE[0].hypot(REFERENCE[1]);
+        let bar = found.k_uncertainty.unwrap();
+        assert!(bar < 0.02 * size, "{nx} x {ny}: {bar}");
+        for (k, reference) in [found.k1, found.k2].into_iter().zip(REFERENCE) {
+            let error = (k.unwrap() - reference).abs();
+            assert!(error <= bound * reference && error <= bar, "{nx} x {ny}: {k:?} of {reference} ± {bar}");
+        }
+    }
+}
+
+/// Fine nodes keep polynomials: to the last bit as without enrichment.
+#[test]
+fn default_nodes_are_not_enriched() {
+    let mut settings = Settings::default();
+    let found = tips(&solve(&plate(), &settings))[0].k1;
+    settings.approximation.enrichment.kind = EnrichmentKind::None;
+    assert_eq!(found, tips(&solve(&plate(), &settings))[0].k1);
 }
 
 /// Enriched, with nodes at tips a fortieth of the room there, four times as far apart as the default.

@@ -52,6 +52,18 @@ fn belytschko_1997_section_5_1_unknowns_are_the_stress_intensity_factors() {
     }
 }
 
+/// Where the functions of a tip fade, their multiples are not K, and none are told.
+#[test]
+fn unknowns_of_faded_functions_are_left_out_with_a_warning() {
+    let result = solve(&square(1.0, 0.0).0, &everywhere(grid(9, 9, EnrichmentKind::ExtrinsicMls)));
+    assert!(tips(&result)[0].k1_direct.is_some() && result.warnings.is_empty(), "{:?}", result.warnings);
+    let mut settings = grid(9, 9, EnrichmentKind::ExtrinsicMls);
+    settings.approximation.enrichment.r2 = Some(0.5);
+    let result = solve(&square(1.0, 0.0).0, &settings);
+    assert_eq!(tips(&result)[0].k1_direct, None);
+    assert!(result.warnings.iter().any(|w| w.message.contains("K_I_direct")), "{:?}", result.warnings);
+}
+
 /// Unlike the basis, the nodes within the automatic region are enough on the coarsest grid.
 #[test]
 fn partition_of_unity_near_the_tip() {

@@ -20,7 +20,7 @@
 
 use super::bodies::{near_tip_square, solve, tips};
 use riss::analysis::{Settings, StaticResult};
-use riss::approximation::{CrackSmoothing, SmoothingSettings, WeightFunction};
+use riss::approximation::{CrackSmoothing, EnrichmentKind, SmoothingSettings, WeightFunction};
 use riss::exact::CrackTipField;
 use riss::fracture::TipDomainShape;
 use riss::integration::GradientCorrection;
@@ -49,6 +49,7 @@ fn opening() -> Model {
 fn grid(n: usize, correction: GradientCorrection) -> Settings {
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Structured(Structured { nx: n, ny: n });
+    settings.approximation.enrichment.kind = EnrichmentKind::None;
     settings.integration.gradient_correction = correction;
     settings
 }

@@ -18,11 +18,12 @@
 
 use super::bodies::{edge_crack, rectangle, solve, tips};
 use riss::analysis::Settings;
-use riss::approximation::{SpacingFrom, WeightFunction};
+use riss::approximation::{EnrichmentKind, SpacingFrom, WeightFunction};
 use riss::fracture::TipDomainShape;
 use riss::material::{Elasticity, PlaneState};
 use riss::model::{BoundaryLoad, BoundarySupport, Direction, Model, PrescribedValue, TractionValue};
 use riss::nodes::settings::{Layout, Structured};
+use riss::system::ConstraintMethod;
 
 /// Converged K_I and K_II [psi√in].
 pub const REFERENCE: [f64; 2] = [34.0425, 4.5370];
@@ -46,6 +47,7 @@ pub fn plate() -> Model {
 fn check_grid(nx: usize, ny: usize, n_nodes: usize, paper: [f64; 2]) {
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Structured(Structured { nx, ny });
+    settings.approximation.enrichment.kind = EnrichmentKind::None;
     settings.approximation.weight_function = WeightFunction::Gaussian;
     settings.approximation.dilation = Some(2.5);
     // The grids are not square; the third neighbor stands at the larger of the two spacings.
@@ -69,6 +71,22 @@ fn belytschko_1997_table_1_5_by_11() {
 #[test]
 fn belytschko_1997_table_1_11_by_29() {
     check_grid(11, 29, 324, [32.51, 4.33]);
+}
+
+/// A row of elements along the clamped edge, on default and even nodes; on even ones elements farther than 1.5 in from the
+/// crack, too, into which the domains of integration reach.
+#[test]
+fn belytschko_organ_krongauz_1995_coupled_elements() {
+    let even = || Layout::Structured(Structured { nx: 21, ny: 49 });
+    for (layout, beyond) in [(Layout::default(), None), (even(), None), (even(), Some(1.5))] {
+        let mut settings = Settings { constraints: ConstraintMethod::FiniteElementCoupled, ..Settings::default() };
+        settings.nodes.layout = layout.clone();
+        settings.approximation.finite_elements_beyond = beyond;
+        let result = solve(&plate(), &settings);
+        let found = tips(&result)[0];
+        let errors = [found.k1.unwrap() / REFERENCE[0] - 1.0, found.k2.unwrap() / REFERENCE[1] - 1.0];
+        assert!(errors.iter().all(|e| e.abs() <= 0.005), "{layout:?} {beyond:?}: {errors:?}");
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #[path = "../bodies/mod.rs"]
 mod bodies;
 mod enrichment;
+mod finite_elements;
 mod invariance;
 mod shape_functions;
 mod smoothing;

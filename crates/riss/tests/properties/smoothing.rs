@@ -95,6 +95,7 @@ const BODIES: [MakeBody; 2] = [random_body, random_junctions];
 
 fn approximation(model: &Model, seed: u64, smoothing: SmoothingSettings) -> MovingLeastSquares {
     let approximation = ApproximationSettings { dilation: Some(2.5), smoothing, ..ApproximationSettings::default() };
+    let approximation = approximation.without_automatic_enrichment();
     let settings = Settings { nodes: random_nodes(&model.domain, 22, seed), approximation, ..Settings::default() };
     // Random nodes outside the body are no nodes.
     let settings = Settings { nodes: inside(model, &settings), ..settings };

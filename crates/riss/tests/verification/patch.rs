@@ -5,7 +5,7 @@
 
 use crate::bodies::*;
 use riss::analysis::{Settings, StaticResult};
-use riss::approximation::{ApproximationSettings, Basis, SupportShape, WeightFunction};
+use riss::approximation::{ApproximationSettings, Basis, EnrichmentKind, SupportShape, WeightFunction};
 use riss::crack::EndKind::{Mouth, Tip};
 use riss::exact::{ExactField, LinearField};
 use riss::geometry::curve::Curve;
@@ -61,12 +61,19 @@ fn angle_bracket() -> Domain {
     with_parts(Domain::new(polygon(&corners), vec![]), &[])
 }
 
+/// Nothing but polynomials.
+fn plain() -> Settings {
+    let mut settings = Settings::default();
+    settings.approximation.enrichment.kind = EnrichmentKind::None;
+    settings
+}
+
 /// Largest error of displacement and stress, relative to the field: over all vertices, boundary values prescribed.
 fn patch_error(mut model: Model, field: LinearField, change: impl Fn(&mut Settings)) -> f64 {
     let exact: Arc<dyn ExactField> = Arc::new(field);
     let everywhere = all(&model.domain);
     hold_exactly(&mut model, everywhere, &BOTH, &exact);
-    let mut settings = Settings::default();
+    let mut settings = plain();
     change(&mut settings);
     relative_error(&model, &field, &run(&model, &settings))
 }
@@ -113,7 +120,12 @@ fn linear_and_rigid_fields_on_a_square() {
     for plane in PLANES {
         for field in [LINEAR, RIGID] {
             for nodes in [structured(9, 8), graded(0.22), random_nodes(&square(), 9, 1)] {
-                for method in [NITSCHE, ConstraintMethod::LagrangeMultipliers, ConstraintMethod::ModifiedVariational] {
+                for method in [
+                    NITSCHE,
+                    ConstraintMethod::LagrangeMultipliers,
+                    ConstraintMethod::ModifiedVariational,
+                    ConstraintMethod::FiniteElementCoupled,
+                ] {
                     check_patch(body(square(), plane), field, &nodes, method, ROUNDING);
                 }
             }
@@ -126,7 +138,7 @@ fn linear_fields_on_bodies_with_corners_and_arcs() {
     for plane in PLANES {
         for (domain, bound) in [(angle_bracket(), ROUNDING), (square_with_hole(), ARC_RULE), (disk(), ARC_RULE)] {
             for nodes in [structured(16, 16), graded(0.25), random_nodes(&domain, 14, 2)] {
-                for method in [NITSCHE, ConstraintMethod::ModifiedVariational] {
+                for method in [NITSCHE, ConstraintMethod::ModifiedVariational, ConstraintMethod::FiniteElementCoupled] {
                     check_patch(body(domain.clone(), plane), LINEAR, &nodes, method, bound);
                 }
             }
@@ -178,9 +190,46 @@ fn tension_along_cracks() {
             model.cracks.push(crack(&vertices, [start, Tip]));
             let field = tension_along(angle, &model.material);
             for nodes in [structured(10, 12), graded_to(0.25, 0.06), random_nodes(&square(), 10, 3)] {
-                for method in [NITSCHE, ConstraintMethod::LagrangeMultipliers] {
+                for method in [NITSCHE, ConstraintMethod::LagrangeMultipliers, ConstraintMethod::FiniteElementCoupled] {
                     check_patch(model.clone(), field, &nodes, method, ROUNDING);
                 }
+            }
+        }
+    }
+}
+
+/// With functions of the tips at the nodes, as by default on coarse nodes. They are nearly dependent, which takes as many
+/// digits as the root of the part of the diagonal that is added to make them unique, 1e-11.
+#[test]
+fn tension_along_a_crack_with_enriched_tips() {
+    let mut model = body(square(), PlaneState::Strain);
+    model.cracks.push(crack(&[(0.53, 1.03), (1.42, 1.03)], [Tip; 2]));
+    let field = tension_along(0.0, &model.material);
+    for method in [NITSCHE, ConstraintMethod::LagrangeMultipliers, ConstraintMethod::FiniteElementCoupled] {
+        let error = patch_error(model.clone(), field, |s| {
+            s.nodes = structured(10, 12);
+            s.constraints = method;
+            s.approximation.enrichment.kind = EnrichmentKind::Automatic;
+        });
+        assert!(error <= 1e-8, "{method:?}: {error:.2e}");
+    }
+}
+
+/// Elements away from the crack, joined to meshfree nodes around it, held by Nitsche's method and at nodes.
+#[test]
+fn elements_away_from_a_crack() {
+    let mut model = body(square(), PlaneState::Strain);
+    model.cracks.push(crack(&[(0.53, 1.03), (1.42, 1.03)], [Tip; 2]));
+    let field = tension_along(0.0, &model.material);
+    for nodes in [structured(12, 12), graded_to(0.2, 0.06), random_nodes(&square(), 12, 3)] {
+        for beyond in [0.05, 0.3] {
+            for method in [NITSCHE, ConstraintMethod::FiniteElementCoupled] {
+                let error = patch_error(model.clone(), field, |s| {
+                    s.nodes = nodes.clone();
+                    s.constraints = method;
+                    s.approximation.finite_elements_beyond = Some(beyond);
+                });
+                assert!(error <= ROUNDING, "{} {beyond} {method:?}: {error:.2e}", label(&nodes));
             }
         }
     }

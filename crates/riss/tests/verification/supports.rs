@@ -28,7 +28,9 @@ fn turned_bar(angle: f64) -> Domain {
 fn rollers_on_inclined_edges() {
     let angle = 0.4;
     let (e1, e2) = (direction(angle), turn_left(direction(angle)));
-    for method in [ConstraintMethod::default(), ConstraintMethod::LagrangeMultipliers] {
+    for method in
+        [ConstraintMethod::default(), ConstraintMethod::LagrangeMultipliers, ConstraintMethod::FiniteElementCoupled]
+    {
         let mut model = body(turned_bar(angle), PlaneState::Strain);
         hold(&mut model, LEFT, Direction::Normal, 0.0);
         hold(&mut model, BOTTOM, Direction::Normal, 0.0);
@@ -96,9 +98,12 @@ fn forces_and_supports_at_points() {
 /// Edges and points hold together: all reactions balance all loads.
 #[test]
 fn reactions_balance_the_loads() {
-    for method in
-        [ConstraintMethod::default(), ConstraintMethod::LagrangeMultipliers, ConstraintMethod::ModifiedVariational]
-    {
+    for method in [
+        ConstraintMethod::default(),
+        ConstraintMethod::LagrangeMultipliers,
+        ConstraintMethod::ModifiedVariational,
+        ConstraintMethod::FiniteElementCoupled,
+    ] {
         let mut model = held_block();
         model.point_loads.push(PointLoad { at: Vector2::new(0.9, 1.4), force: Vector2::new(0.4, -0.9) });
         let settings = Settings { constraints: method, ..with_nodes(graded(0.2)) };

@@ -37,13 +37,17 @@ fn add_defaults(file: &mut CaseFile, report: &Report) {
 }
 
 /// Cracking particles know nothing but visibility and polynomials.
-fn check_particles(file: &CaseFile, report: &mut Report) {
+fn check_particles(file: &mut CaseFile, report: &mut Report) {
     const ADVICE: &str = "leave it out, or use `method = \"element-free-galerkin\"`";
     if file.approximation.smoothing.cracks.is_some_and(|c| c != CrackSmoothing::Visibility) {
         let message = "cracking particles divide supports by visibility";
         report.error("approximation.smoothing.cracks", message).allow("visibility").suggest(ADVICE);
     }
-    if file.approximation.enrichment.kind != EnrichmentKind::None {
+    let kind = &mut file.approximation.enrichment.kind;
+    if *kind == EnrichmentKind::Automatic {
+        *kind = EnrichmentKind::None;
+    }
+    if *kind != EnrichmentKind::None {
         let message = "cracking particles have no functions of the tip in their basis";
         report.error("approximation.enrichment.kind", message).allow("none").suggest(ADVICE);
     }

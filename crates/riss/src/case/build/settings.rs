@@ -36,7 +36,9 @@ pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> S
     match file.constraints {
         ConstraintMethod::Nitsche { factor } => report.positive("constraints.nitsche.factor", factor),
         ConstraintMethod::Penalty { factor } => report.positive("constraints.penalty.factor", factor),
-        ConstraintMethod::LagrangeMultipliers | ConstraintMethod::ModifiedVariational => true,
+        ConstraintMethod::LagrangeMultipliers
+        | ConstraintMethod::ModifiedVariational
+        | ConstraintMethod::FiniteElementCoupled => true,
     };
     if let Some(radii) = &file.fracture.radii {
         if radii.len() < 3 {
@@ -84,6 +86,14 @@ fn check_approximation(file: &CaseFile, report: &mut Report) {
     if file.approximation.dilation.is_some_and(|d| d < least) {
         let message = "too few neighbors for the basis";
         report.error("approximation.dilation", message).allow(format!("{least} to 10"));
+    }
+    if let Some(distance) = file.approximation.finite_elements_beyond
+        && report.positive("approximation.finite_elements_beyond", distance)
+        && file.constraints == ConstraintMethod::LagrangeMultipliers
+    {
+        // Elements have one value at a corner, multipliers one for each side.
+        let message = "multipliers are not unique at the corners of finite elements";
+        report.error("constraints", message).suggest("use `finite-element-coupled` or `nitsche`");
     }
     let enrichment = &file.approximation.enrichment;
     if let Some(r2) = enrichment.r2
