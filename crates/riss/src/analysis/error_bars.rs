@@ -21,6 +21,7 @@ use crate::error::Result;
 use crate::math::Vector2;
 use crate::model::Model;
 use crate::system::{Discretization, Solution};
+use std::f64::consts::PI;
 
 /// Part of `λ` that is in a bar on fine nodes.
 const SHARE: f64 = 0.25;
@@ -29,6 +30,9 @@ const SHARE_GROWTH: f64 = 20.0;
 /// Part of the square of the largest support in the largest domain over its radius that is in a bar where nodes hold the
 /// field of the tip.
 const ENRICHED_SHARE: f64 = 0.006;
+
+/// Part of what the discretization leaves out of the factors, over `√(πR)`, that is in the bar of the T-stress.
+const T_SHARE: f64 = 1.0;
 
 /// Widens the bars of all tips, which hold the spread over the domains before.
 ///
@@ -61,7 +65,12 @@ pub(super) fn widen_error_bars(
         let smooth = enriched(discrete, tip.position).map_or(0.0, |_| {
             ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2)
         });
-        tip.k_uncertainty = Some((spread + part + smooth).max(second));
+        let bar = (spread + part + smooth).max(second);
+        tip.k_uncertainty = Some(bar);
+        // J goes with the square of the factors.
+        tip.j_uncertainty = tip.j_uncertainty.map(|spread| spread.max((2.0 * size + bar) * bar / young));
+        let unit = (PI * radius).sqrt();
+        tip.t_uncertainty = tip.t_uncertainty.map(|spread| spread + T_SHARE * (part + smooth) / unit);
     }
     Ok(())
 }

@@ -78,7 +78,16 @@ pub(super) fn solve_step(
         false => Fields::default(),
     };
     let reactions = reactions(model, &discrete, &solution, &method)?;
-    let step = StepRecord { step, load_factor: 1.0, cycles: None, stability: None, end: None, cracks, reactions };
+    let step = StepRecord {
+        step,
+        load_factor: 1.0,
+        cycles: None,
+        cycles_range: None,
+        stability: None,
+        end: None,
+        cracks,
+        reactions,
+    };
     let nodes = discrete.approximation.nodes();
     let node_records = (0..nodes.len()).map(|i| NodeRecord {
         position: nodes.positions[i],
@@ -276,25 +285,22 @@ fn evaluate_tip(
     };
     let loads = TipLoads { body_force: acts.then_some(&force as ForceAt), face_pressure };
     let found = tip_integrals(&view, &radii, &settings.fracture, &model.material, &loads, &field)?;
-    let mean = |get: fn(&TipIntegrals) -> f64| found.iter().map(get).sum::<f64>() / found.len() as f64;
-    let spread = |get: fn(&TipIntegrals) -> f64| {
-        let values = || found.iter().map(get);
-        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
-    };
+    let mean = |get| mean_of(&found, get);
+    let spread = |get| spread_of(&found, get);
     let (k1, k2) = (mean(|t| t.k1), mean(|t| t.k2));
     record.k1 = Some(k1);
     record.k2 = Some(k2);
     record.k_uncertainty = Some(spread(|t| t.k1).max(spread(|t| t.k2)));
     let clear = view.clear_of_kinks(&radii, discrete.triangulation.spacing_at(view.frame.position));
     // Faces that turn away hold energy that counts for J, and it is poor next to a kink.
-    record.j = Some(match clear == radii {
-        true => mean(|t| t.j),
-        false => {
-            let found = tip_integrals(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
-            found.iter().map(|t| t.j).sum::<f64>() / found.len() as f64
-        }
-    });
+    let found_clear = match clear == radii {
+        true => found.clone(),
+        false => tip_integrals(&view, &clear, &settings.fracture, &model.material, &loads, &field)?,
+    };
+    record.j = Some(mean_of(&found_clear, |t| t.j));
+    record.j_uncertainty = Some(spread_of(&found_clear, |t| t.j));
     record.t_stress = Some(mean(|t| t.t_stress));
+    record.t_uncertainty = Some(spread(|t| t.t_stress));
     let forces = configurational_forces(&view, &clear, &settings.fracture, &model.material, &loads, &field)?;
     let sum = forces.iter().map(|f| f.value(settings.fracture.crack_faces)).sum::<Vector2>();
     record.configurational_force = Some(sum / forces.len() as f64);
@@ -310,6 +316,16 @@ fn direct_factors(model: &Model, discrete: &Discretization, solution: &Solution,
     let (tip, [inner, _]) = discrete.approximation.enrichment()?.regions().nth(place)?;
     let farthest = discrete.approximation.nodes().positions.iter().map(|p| (p - tip).norm()).fold(0.0, f64::max);
     (inner >= farthest).then(|| solution.tip_factors[place])
+}
+
+fn mean_of(found: &[TipIntegrals], get: fn(&TipIntegrals) -> f64) -> f64 {
+    found.iter().map(get).sum::<f64>() / found.len() as f64
+}
+
+/// Largest value less smallest.
+fn spread_of(found: &[TipIntegrals], get: fn(&TipIntegrals) -> f64) -> f64 {
+    let values = || found.iter().map(get);
+    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
 }
 
 /// What a tip does, by its factors and the contact pressure on the faces there.

@@ -72,6 +72,8 @@ pub struct StepRecord {
     pub load_factor: f64,
     /// Load cycles so far, in fatigue.
     pub cycles: Option<f64>,
+    /// The same if all factors are larger, or smaller, by their error bars; infinite where the crack then does not grow.
+    pub cycles_range: Option<[f64; 2]>,
     /// Whether the load must rise for the crack to go on, in quasi-static growth from the second step on.
     pub stability: Option<Stability>,
     /// Why growth ends with this step, if it does.
@@ -117,8 +119,12 @@ pub struct TipRecord {
     pub k2_direct: Option<f64>,
     /// J-integral [stress·length].
     pub j: Option<f64>,
+    /// Error bar of the J-integral ([`error_bars`](super::error_bars)) [stress·length].
+    pub j_uncertainty: Option<f64>,
     /// T-stress [stress].
     pub t_stress: Option<f64>,
+    /// Error bar of the T-stress ([`error_bars`](super::error_bars)) [stress].
+    pub t_uncertainty: Option<f64>,
     /// Configurational force in the tip frame [stress·length].
     pub configurational_force: Option<Vector2>,
     /// Angle of the next increment against the direction ahead, counterclockwise [rad].
@@ -150,7 +156,9 @@ impl TipRecord {
             k1_direct: None,
             k2_direct: None,
             j: None,
+            j_uncertainty: None,
             t_stress: None,
+            t_uncertainty: None,
             configurational_force: None,
             kink_angle: None,
             k_equivalent: None,

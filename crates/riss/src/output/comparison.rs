@@ -189,6 +189,7 @@ mod tests {
                 step: k - 1,
                 load_factor: 1.0,
                 cycles: None,
+                cycles_range: None,
                 stability: None,
                 end: None,
                 cracks: vec![crack],

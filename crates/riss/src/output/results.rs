@@ -77,6 +77,8 @@ pub struct StepResults {
     pub load_factor: Option<f64>,
     /// Load cycles so far, in fatigue.
     pub cycles: Option<f64>,
+    /// The same if all factors are larger, or smaller, by their error bars; null where the crack then does not grow.
+    pub cycles_range: Option<[Option<f64>; 2]>,
     /// Whether the load must rise for the crack to go on, in quasi-static growth.
     pub stability: Option<Stability>,
     /// Number of nodes; null in a step that could not be solved.
@@ -144,7 +146,7 @@ pub struct TipResults {
     /// Mode II stress intensity factor [stress·√length], positive if the face to the left slides ahead.
     #[serde(rename = "K_II")]
     pub k2: Option<f64>,
-    /// Spread of both over the integration domains, at least what the last refinement lets expect of the next ones [stress·√length].
+    /// Error bar of both, at least what the last refinement lets expect of the next ones [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
     /// Mode I factor that was solved for as an unknown, with `extrinsic-mls` enrichment [stress·√length].
@@ -156,9 +158,15 @@ pub struct TipResults {
     /// J-integral [stress·length].
     #[serde(rename = "J")]
     pub j: Option<f64>,
+    /// Error bar of the J-integral [stress·length].
+    #[serde(rename = "J_uncertainty")]
+    pub j_uncertainty: Option<f64>,
     /// T-stress [stress].
     #[serde(rename = "T")]
     pub t_stress: Option<f64>,
+    /// Error bar of the T-stress [stress].
+    #[serde(rename = "T_uncertainty")]
+    pub t_uncertainty: Option<f64>,
     /// Configurational force, ahead and to the left [stress·length].
     pub configurational_force: Option<[f64; 2]>,
     /// Angle of the next increment against the direction ahead, counterclockwise [degree].
@@ -225,6 +233,7 @@ impl StepResults {
             step: step.step,
             load_factor: finite(step.load_factor),
             cycles: step.cycles.and_then(finite),
+            cycles_range: step.cycles_range.map(|range| range.map(finite)),
             stability: step.stability,
             nodes: (result.n_nodes > 0).then_some(result.n_nodes),
             strain_energy: finite(result.strain_energy),
@@ -272,7 +281,9 @@ impl TipResults {
             k1_direct: tip.k1_direct.and_then(finite),
             k2_direct: tip.k2_direct.and_then(finite),
             j: tip.j.and_then(finite),
+            j_uncertainty: tip.j_uncertainty.and_then(finite),
             t_stress: tip.t_stress.and_then(finite),
+            t_uncertainty: tip.t_uncertainty.and_then(finite),
             configurational_force: tip.configurational_force.and_then(finite_pair),
             kink_angle_deg: tip.kink_angle.and_then(finite).map(f64::to_degrees),
             k_equivalent: tip.k_equivalent.and_then(finite),

@@ -59,6 +59,14 @@ fn paris_life_is_the_integral_of_the_handbook() {
         let cycles = record.cycles.expect("fatigue counts cycles");
         // Three times the 0.1 % of the handbook's factor.
         assert!((cycles / life - 1.0).abs() < 3e-3, "step {}: {cycles} of {life}", record.step);
+        // A bar of a factor is m times as wide for the life.
+        let [fewest, most] = record.cycles_range.expect("fatigue counts cycles");
+        let tips = steps.records[..=record.step].iter().flat_map(|r| &r.cracks[0].tips);
+        let bars: Vec<f64> = tips.map(|t| m * t.k_uncertainty.unwrap() / t.k1.unwrap()).collect();
+        let [least, largest] = [f64::min, f64::max].map(|pick| bars.iter().copied().reduce(pick).unwrap());
+        for width in [1.0 - fewest / cycles, most / cycles - 1.0] {
+            assert!(width > 0.95 * least && width < 1.05 * largest, "step {}: {width}", record.step);
+        }
         let lengths: Vec<f64> = record.cracks[0].tips.iter().map(|t| t.position.x.abs()).collect();
         assert!((lengths[0] - lengths[1]).abs() < 1e-3 * lengths[0], "{lengths:?}");
     }

@@ -27,6 +27,8 @@ pub(super) struct TipPlan {
     pub length: f64,
     /// Equivalent factor [stress·√length].
     pub k_equivalent: f64,
+    /// Error bar of the factors [stress·√length].
+    pub k_uncertainty: f64,
 }
 
 /// Growth that is saved up.
@@ -149,7 +151,8 @@ fn grow(step: &mut StepRecord, tip: TipId, length: f64, reason: String, plan: &m
     record.increment = Some(length);
     record.reason = Some(reason);
     let (angle, k_equivalent) = (record.kink_angle.unwrap_or(0.0), record.k_equivalent.unwrap_or(0.0));
-    plan.tips.push(TipPlan { tip, angle, length, k_equivalent });
+    let k_uncertainty = record.k_uncertainty.unwrap_or(0.0);
+    plan.tips.push(TipPlan { tip, angle, length, k_equivalent, k_uncertainty });
 }
 
 /// Every open tip that is not in the shadow of another.
@@ -203,13 +206,21 @@ fn count_cycles(
     let mut end = None;
     if let Some(leader) = state.leader.take() {
         let [a_start, a_end] = leader.lengths;
-        let now = all_tips(step).find(|(id, _)| *id == leader.tip).and_then(|(_, t)| t.k_equivalent);
+        let tip = all_tips(step).find(|(id, _)| *id == leader.tip).map(|(_, t)| t);
+        let now = tip.and_then(|t| t.k_equivalent);
         // A tip that has arrived somewhere has no factor any more; that of a crack in a wide body stands in.
         let k_end = now.filter(|k| *k > 0.0).unwrap_or(leader.k_equivalent * (a_end / a_start).sqrt());
         let way = fatigue::Increment { a_start, a_end, k_start: leader.k_equivalent, k_end };
         let life = fatigue::cycles_over(law, cycles, way).cycles;
         if life.is_finite() {
             state.cycles += life;
+            let bars = [leader.k_uncertainty, tip.and_then(|t| t.k_uncertainty).unwrap_or(leader.k_uncertainty)];
+            for (bound, sign) in state.cycles_range.iter_mut().zip([1.0, -1.0]) {
+                let [k_start, k_end] = [way.k_start + sign * bars[0], way.k_end + sign * bars[1]].map(|k| k.max(0.0));
+                let life = fatigue::cycles_over(law, cycles, fatigue::Increment { k_start, k_end, ..way }).cycles;
+                // A state is written as JSON, which knows no infinity.
+                *bound = (*bound + life).min(f64::MAX);
+            }
         } else {
             let reason = format!(
                 "{} creeps towards its threshold: K_equivalent falls from {:.5e} to {k_end:.5e} over the last increment",
@@ -220,6 +231,7 @@ fn count_cycles(
         }
     }
     step.cycles = Some(state.cycles);
+    step.cycles_range = Some(state.cycles_range.map(|c| if c < f64::MAX { c } else { f64::INFINITY }));
     end
 }
 
@@ -276,7 +288,8 @@ pub(super) fn leader(plan: &StepPlan, model: &Model) -> Option<Leader> {
     let hardest = plan.tips.iter().map(|t| t.k_equivalent).fold(0.0, f64::max);
     let tip = plan.tips.iter().find(|t| t.k_equivalent == hardest)?;
     let length = model.cracks[tip.tip.crack].handbook_length();
-    Some(Leader { tip: tip.tip, lengths: [length; 2], k_equivalent: tip.k_equivalent })
+    let k_uncertainty = tip.k_uncertainty;
+    Some(Leader { tip: tip.tip, lengths: [length; 2], k_equivalent: tip.k_equivalent, k_uncertainty })
 }
 
 fn reached_limit(model: &Model, growth: &GrowthSettings, step: &StepRecord) -> Option<GrowthEnd> {

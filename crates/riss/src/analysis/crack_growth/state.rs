@@ -18,6 +18,9 @@ pub struct GrowthState {
     pub cracks: Vec<CrackPath>,
     /// Load cycles up to the step before.
     pub cycles: f64,
+    /// The same if all factors are larger, or smaller, by their error bars; the largest number where that is too few to grow.
+    #[serde(default)]
+    pub cycles_range: [f64; 2],
     /// The increment from the step before, which the cycles are still to be counted of.
     pub leader: Option<Leader>,
     /// Factor on the loads in the step before.
@@ -45,6 +48,9 @@ pub struct Leader {
     pub lengths: [f64; 2],
     /// Equivalent factor before the increment [stress·√length].
     pub k_equivalent: f64,
+    /// Error bar of the factors before the increment [stress·√length].
+    #[serde(default)]
+    pub k_uncertainty: f64,
 }
 
 /// What a tip carries from step to step.
