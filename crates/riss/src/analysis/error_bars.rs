@@ -11,6 +11,9 @@
 //! Where the nodes hold the field of the tip, it is not smoothed, and the estimate sees little: what is left is the error of
 //! polynomials in the rest of the field, which goes with the square of the supports over the size of the domain and is added.
 //!
+//! J goes with the square of the factors, and so does its bar, which is no less than its spread. That of the T-stress has
+//! shares of its spread and of what the discretization leaves out of the factors, over `√(πR)`.
+//!
 //! The multiple is calibrated by bodies with known factors (`cargo xtask calibrate`). It grows with `λ`, as recovery sees
 //! less of the error on coarse nodes.
 
@@ -31,8 +34,9 @@ const SHARE_GROWTH: f64 = 20.0;
 /// field of the tip.
 const ENRICHED_SHARE: f64 = 0.006;
 
-/// Part of what the discretization leaves out of the factors, over `√(πR)`, that is in the bar of the T-stress.
-const T_SHARE: f64 = 1.0;
+/// Parts of the spread of the T-stress, and of what the discretization leaves out of the factors over `√(πR)`, that are
+/// in its bar.
+const T_SHARES: [f64; 2] = [0.8, 0.9];
 
 /// Widens the bars of all tips, which hold the spread over the domains before.
 ///
@@ -58,10 +62,9 @@ pub(super) fn widen_error_bars(
     for ((tip, error), TipDisk { radius, .. }) in tips.iter_mut().zip(errors).zip(disks) {
         let (Some(k1), Some(k2), Some(spread)) = (tip.k1, tip.k2, tip.k_uncertainty) else { continue };
         let size = k1.hypot(k2);
-        let part = size * numerical_part(error * young / (size * size * radius));
-        let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
         // A tip without load has no part.
-        let part = if part.is_finite() { part } else { 0.0 };
+        let part = if size > 0.0 { size * numerical_part(error * young / (size * size * radius)) } else { 0.0 };
+        let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
         let smooth = enriched(discrete, tip.position).map_or(0.0, |_| {
             ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2)
         });
@@ -70,7 +73,7 @@ pub(super) fn widen_error_bars(
         // J goes with the square of the factors.
         tip.j_uncertainty = tip.j_uncertainty.map(|spread| spread.max((2.0 * size + bar) * bar / young));
         let unit = (PI * radius).sqrt();
-        tip.t_uncertainty = tip.t_uncertainty.map(|spread| spread + T_SHARE * (part + smooth) / unit);
+        tip.t_uncertainty = tip.t_uncertainty.map(|spread| T_SHARES[0] * spread + T_SHARES[1] * (part + smooth) / unit);
     }
     Ok(())
 }
