@@ -1,4 +1,5 @@
-//! Puts the gallery into the program: of each case its page, its case file and the files that these name.
+//! Puts the gallery into the program: of each case its page, its case file and the files that these name; apart from them
+//! its reference values.
 
 use std::fmt::Write;
 use std::fs;
@@ -12,21 +13,40 @@ fn main() {
     let mut code = String::from("const CASES: &[GalleryCase] = &[\n");
     for folder in folders {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        writeln!(code, "    GalleryCase {{ name: {name:?}, files: &[").expect("a string takes all");
-        for path in kept(&folder) {
-            println!("cargo::rerun-if-changed={}", path.display());
-            let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let path = path.canonicalize().expect("the file is there");
-            writeln!(code, "        ({file:?}, include_bytes!({path:?})),").expect("a string takes all");
-        }
-        code += "    ] },\n";
+        let [files, references] = [kept(&folder), references(&folder)].map(|paths| embedded(&paths));
+        writeln!(code, "    GalleryCase {{ name: {name:?}, files: &[{files}], references: &[{references}] }},")
+            .expect("a string takes all");
     }
     code += "];\n";
     let out = std::env::var_os("OUT_DIR").expect("cargo sets it");
     fs::write(Path::new(&out).join("gallery.rs"), code).expect("the folder can be written");
 }
 
-/// The files of a case that go along: reference values serve tests only.
+/// Names and contents, as code.
+fn embedded(paths: &[PathBuf]) -> String {
+    let mut code = String::new();
+    for path in paths {
+        println!("cargo::rerun-if-changed={}", path.display());
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let path = path.canonicalize().expect("the file is there");
+        write!(code, "({file:?}, include_bytes!({path:?})), ").expect("a string takes all");
+    }
+    code
+}
+
+/// `expected.json` and the files that it names.
+fn references(folder: &Path) -> Vec<PathBuf> {
+    let text = fs::read_to_string(folder.join("expected.json")).unwrap_or_default();
+    let is_named = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        name == "expected.json" || text.contains(&format!("\"{name}\""))
+    };
+    let mut files: Vec<PathBuf> = list(folder).into_iter().filter(|p| p.is_file() && is_named(p)).collect();
+    files.sort();
+    files
+}
+
+/// The files of a case that go along when it is copied.
 fn kept(folder: &Path) -> Vec<PathBuf> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
     let texts = read("case.toml") + &read("README.md");

@@ -1,7 +1,7 @@
 //! The gallery of the book: every case with its picture, references and tolerances.
 
 use crate::case_folders;
-use crate::expected::{Expected, RunBy};
+use riss_expected::{Expected, RunBy};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -1,14 +1,14 @@
 //! Development tasks: one entry, `cargo xtask`, no shell scripts.
 //!
-//! A library, so that integration tests can use the same rules: [`expected`] compares a run with its reference values,
-//! [`mod@reference`] turns the JSON schema of the case file into a page of the book, [`tidy`] checks the manners of the code.
+//! A library, so that integration tests can use the same rules: [`mod@reference`] turns the JSON schema of
+//! the case file into a page of the book, [`tidy`] checks the manners of the code. How a run compares with its reference
+//! values is in `riss-expected`, which the program uses too.
 
 pub mod bench;
 pub mod calibrate;
 pub mod ci;
 pub mod dist;
 pub mod docs;
-pub mod expected;
 pub mod gallery;
 pub mod python;
 pub mod reference;

@@ -1,7 +1,7 @@
 //! `cargo xtask verify`: every case against its reference values, as a table; and two hundred random plates.
 
-use crate::expected::{CaseRun, Comparison, Expected, run_case};
 use crate::{Outcome, build_riss, cargo, case_folders, root, run as run_command, target_dir};
+use riss_expected::{CaseRun, Comparison, Expected, run_case};
 use std::fmt::Write;
 use std::path::Path;
 

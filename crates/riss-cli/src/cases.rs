@@ -2,6 +2,7 @@
 
 use crate::{BAD_CASE, DONE, results};
 use clap::Args;
+use riss_expected::Expected;
 use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -9,10 +10,13 @@ use std::path::{Path, PathBuf};
 include!(concat!(env!("OUT_DIR"), "/gallery.rs"));
 
 /// A case of the gallery.
-struct GalleryCase {
-    name: &'static str,
+pub struct GalleryCase {
+    /// Name of its folder.
+    pub name: &'static str,
     /// Names and contents.
     files: &'static [(&'static str, &'static [u8])],
+    /// `expected.json` and what it names.
+    references: &'static [(&'static str, &'static [u8])],
 }
 
 /// Arguments of `riss cases`.
@@ -33,6 +37,23 @@ impl GalleryCase {
         let text = String::from_utf8_lossy(page);
         text.lines().next().unwrap_or("").trim_start_matches('#').trim().to_string()
     }
+
+    /// Its reference values.
+    ///
+    /// # Errors
+    /// What is not understood in them.
+    pub fn expected(&self) -> Result<Expected, String> {
+        let file = |name: &str| {
+            let found = self.references.iter().find(|f| f.0 == name).ok_or_else(|| format!("{name} is missing"))?;
+            String::from_utf8(found.1.to_vec()).map_err(|e| e.to_string())
+        };
+        Expected::parse(&file("expected.json")?, &file)
+    }
+}
+
+/// All cases, by name.
+pub fn gallery() -> &'static [GalleryCase] {
+    CASES
 }
 
 /// Lists the gallery or copies one of its cases; returns the exit code.
@@ -77,7 +98,8 @@ fn copy(case: &GalleryCase, dir: &Path) -> u8 {
     }
 }
 
-fn write(case: &GalleryCase, dir: &Path) -> io::Result<()> {
+/// Copies a case into a folder, which is made if needed.
+pub fn write(case: &GalleryCase, dir: &Path) -> io::Result<()> {
     std::fs::create_dir_all(dir)?;
     for (name, content) in case.files {
         OpenOptions::new().write(true).create_new(true).open(dir.join(name))?.write_all(content)?;

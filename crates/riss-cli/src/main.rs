@@ -1,5 +1,5 @@
 //! The riss program: `run`, `check`, `compare`, `converge`, `report`, `export`, `shape`, `schema`, `new`, `import`,
-//! `cases`, `completions`, `man`.
+//! `cases`, `selftest`, `completions`, `man`.
 
 mod batch;
 mod cases;
@@ -21,6 +21,7 @@ mod results;
 mod resume;
 mod run;
 mod schema;
+mod selftest;
 mod shape;
 mod solid;
 mod sweep;
@@ -82,6 +83,8 @@ enum Command {
     Import(import::ImportArguments),
     /// Lists the gallery of ready cases, or copies one
     Cases(cases::CasesArguments),
+    /// Runs documented cases and compares them with their references
+    Selftest(selftest::SelftestArguments),
     /// Prints the script that completes commands in a shell
     Completions(manual::CompletionsArguments),
     /// Prints the manual page
@@ -102,6 +105,7 @@ fn main() -> ExitCode {
         Command::New { file } => new::write(&file),
         Command::Import(arguments) => import::import(&arguments),
         Command::Cases(arguments) => cases::cases(&arguments),
+        Command::Selftest(arguments) => selftest::run(&arguments),
         Command::Completions(arguments) => manual::completions(&arguments),
         Command::Man(arguments) => manual::man(&arguments),
     };

@@ -1,7 +1,7 @@
 //! Every case folder that is not for `cargo xtask verify` only, run by the `riss` program, meets its reference values.
 
+use riss_expected::{Comparison, Expected, RunBy, run_case};
 use std::path::Path;
-use xtask::expected::{Comparison, Expected, RunBy, run_case};
 use xtask::verify::failure;
 
 #[test]

@@ -1,7 +1,7 @@
 //! Every case folder is complete: a page, a case file and reference values.
 
 use super::Findings;
-use crate::expected::Expected;
+use riss_expected::Expected;
 use std::path::Path;
 
 /// Checks all folders under `cases`.

@@ -1,6 +1,6 @@
 //! Runs the case of a folder and compares it with its references.
 
-use super::{Comparison, Expected};
+use crate::{Comparison, Expected};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};

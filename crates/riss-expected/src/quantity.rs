@@ -1,6 +1,6 @@
 //! Which numbers and words of the results have references.
 
-use super::path::{self, Point, Window};
+use crate::path::{self, Point, Window};
 use serde_json::Value;
 
 /// Which number or word of the results is meant.

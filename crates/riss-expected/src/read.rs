@@ -1,8 +1,8 @@
 //! Reads `expected.json`.
 
-use super::path::{self, Window};
-use super::quantity::Along;
-use super::{Expected, Quantity, Reference, RunBy, Target, Tolerance};
+use crate::path::{self, Window};
+use crate::quantity::Along;
+use crate::{Expected, Quantity, Reference, RunBy, Target, Tolerance};
 use serde_json::{Map, Value};
 use std::ops::RangeInclusive;
 use std::path::Path;
