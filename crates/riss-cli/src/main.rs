@@ -1,6 +1,14 @@
 //! The riss program: `run`, `check`, `compare`, `converge`, `report`, `export`, `shape`, `schema`, `new`, `import`,
 //! `cases`, `selftest`, `completions`, `man`.
 
+/// Like that of the standard library, which panics where stderr takes nothing: a full disk, a reader that has gone away.
+macro_rules! eprintln {
+    ($($words:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr().lock(), $($words)*);
+    }};
+}
+
 mod batch;
 mod cases;
 mod check;

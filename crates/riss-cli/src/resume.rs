@@ -3,7 +3,7 @@
 use crate::grow::Beginning;
 use crate::results;
 use riss::case::Case;
-use riss::output::{RunWriter, read_results, restart_state, write_file};
+use riss::output::{RESULTS_FILE, RunWriter, read_results, restart_state, write_file};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -25,6 +25,11 @@ pub struct Resumed {
 /// Begins a run in a folder, and keeps there what is needed to go on with it.
 pub fn begin(case: &Case, dir: &Path) -> Result<Beginning, String> {
     let failed = |e: std::io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(&e));
+    // Killed in between, the results of one case must not stand beside the text of another.
+    match std::fs::remove_file(dir.join(CASE_COPY)) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(failed(e)),
+        _ => {}
+    }
     let writer = RunWriter::new(dir, results::options(case)).map_err(failed)?;
     let path = case.path.canonicalize().unwrap_or_else(|_| case.path.clone());
     let copy = Resumed { case: path, text: case.text.clone(), overrides: case.overrides.clone() };
@@ -53,6 +58,10 @@ impl Resumed {
                 case.path.display(),
                 dir.display()
             ));
+        }
+        if from_step.unwrap_or(0) == 0 && !dir.join(RESULTS_FILE).exists() {
+            // Stopped before its first step was complete.
+            return begin(case, dir);
         }
         let results = read_results(dir).map_err(|e| format!("the results in {} cannot be read: {e}", dir.display()))?;
         let last = results.steps.last().map_or(0, |s| s.step);

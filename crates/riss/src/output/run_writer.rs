@@ -3,9 +3,9 @@
 use super::fields::{STEP_FILE_KINDS, step_file_name, step_files};
 use super::history::history_csv;
 use super::report::{self, REPORT_FILE, REPORT_FOLDER, RunSource};
-use super::results::{Results, StepResults};
+use super::results::{Results, RunStatus, StepResults};
 use super::vtk::collection;
-use super::whole_file::write_whole;
+use super::whole_file::{remove_leftovers, write_whole};
 use super::{FieldQuantity, OutputOptions, PICTURE_FILE, RESULTS_FILE, RunInfo, field_picture};
 use crate::analysis::{GrowthState, StaticResult};
 use std::fs;
@@ -35,6 +35,7 @@ impl RunWriter {
     /// What the system says.
     pub fn new(dir: &Path, options: OutputOptions) -> io::Result<Self> {
         fs::create_dir_all(dir)?;
+        remove_all_leftovers(dir)?;
         remove_if_there(&dir.join(RESULTS_FILE))?;
         remove_if_there(&dir.join(REPORT_FILE))?;
         report::write_source(dir, None)?;
@@ -42,12 +43,14 @@ impl RunWriter {
         Ok(Self { dir: dir.into(), options, steps: vec![], step_files: vec![] })
     }
 
-    /// Goes on in the folder of an earlier run: its steps before `first` stay, the others are removed.
+    /// Goes on in the folder of an earlier run with the step `first`, which is made again: its steps before stay, and
+    /// `first` itself until it is replaced; the others are removed.
     ///
     /// # Errors
     /// What the system says; `InvalidData` if the results there are no results or lack one of those steps.
     pub fn resume(dir: &Path, options: OutputOptions, first: usize) -> io::Result<Self> {
-        let mut steps = read_results(dir)?.steps;
+        let results = read_results(dir)?;
+        let mut steps = results.steps.clone();
         steps.retain(|s| s.step < first);
         if steps.iter().map(|s| s.step).ne(0..first) {
             return Err(io::Error::new(
@@ -55,7 +58,10 @@ impl RunWriter {
                 format!("there are no results of all steps before {first}"),
             ));
         }
-        remove_steps_from(dir, first)?;
+        remove_all_leftovers(dir)?;
+        // Before their files go, so that a run that is killed in between leaves no results without them.
+        forget_steps_after(dir, results, first)?;
+        remove_steps_from(dir, first + 1)?;
         let there = |kind: &'static str| {
             (0..first).filter(move |k| dir.join(step_file_name(kind, *k)).is_file()).map(move |k| (kind, k))
         };
@@ -181,19 +187,48 @@ fn remove_if_there(path: &Path) -> io::Result<()> {
     }
 }
 
+fn remove_all_leftovers(dir: &Path) -> io::Result<()> {
+    folders(dir).iter().try_for_each(|folder| remove_leftovers(folder))
+}
+
+/// All folders of a run.
+fn folders(dir: &Path) -> [PathBuf; 3] {
+    [dir.to_path_buf(), dir.join(RESTART_FOLDER), dir.join(REPORT_FOLDER)]
+}
+
+/// Takes the steps after `last` out of the results in a folder, and what they came to.
+fn forget_steps_after(dir: &Path, mut results: Results, last: usize) -> io::Result<()> {
+    if results.growth_end.is_none() && results.steps.last().is_none_or(|s| s.step <= last) {
+        return Ok(());
+    }
+    results.steps.retain(|s| s.step <= last);
+    results.files.retain(|name| step_of(name).is_none_or(|step| step <= last));
+    results.growth_end = None;
+    results.status = RunStatus::Stopped;
+    results.warnings = results.steps.iter().flat_map(|s| s.warnings.iter().cloned()).collect();
+    if let Some(step) = results.steps.last() {
+        results.nodes = step.nodes.unwrap_or(0);
+        results.strain_energy = step.strain_energy;
+    }
+    write_whole(&dir.join(RESULTS_FILE), results.to_json().as_bytes())?;
+    write_whole(&dir.join(REPORT_FILE), report::report(dir, &results)?.as_bytes())
+}
+
+/// The step whose file has this name, such as `restart/step_0012.json`.
+fn step_of(name: &str) -> Option<usize> {
+    let (kind, rest) = name.rsplit('/').next()?.rsplit_once('_')?;
+    let step: usize = rest.split_once('.')?.0.parse().ok()?;
+    let is_field = STEP_FILE_KINDS.contains(&kind) && name == step_file_name(kind, step);
+    (is_field || OTHER_STEP_FILES.contains(&kind)).then_some(step)
+}
+
 /// Removes the files of steps from `first` on, so that none of an earlier run passes for one of this.
 fn remove_steps_from(dir: &Path, first: usize) -> io::Result<()> {
-    let is_old = |name: &str| {
-        let (kind, rest) = name.rsplit_once('_')?;
-        let step: usize = rest.split_once('.')?.0.parse().ok()?;
-        let ours = STEP_FILE_KINDS.contains(&kind) && name == step_file_name(kind, step);
-        ((ours || OTHER_STEP_FILES.contains(&kind)) && step >= first).then_some(())
-    };
-    for folder in [dir.to_path_buf(), dir.join(RESTART_FOLDER), dir.join(REPORT_FOLDER)] {
+    for folder in folders(dir) {
         let Ok(entries) = fs::read_dir(&folder) else { continue };
         for entry in entries {
             let entry = entry?;
-            if is_old(&entry.file_name().to_string_lossy()).is_some() {
+            if step_of(&entry.file_name().to_string_lossy()).is_some_and(|step| step >= first) {
                 remove_if_there(&entry.path())?;
             }
         }

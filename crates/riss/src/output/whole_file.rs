@@ -21,6 +21,27 @@ pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
     })
 }
 
+/// Removes the temporary files that killed runs have left in a folder; one without the folder is fine.
+///
+/// # Errors
+/// What the system says.
+pub fn remove_leftovers(dir: &Path) -> io::Result<()> {
+    let Ok(entries) = fs::read_dir(dir) else { return Ok(()) };
+    for entry in entries {
+        let entry = entry?;
+        if is_temporary(&entry.file_name().to_string_lossy()) {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether [`write_whole`] makes such names: `.results.json.1234.tmp`.
+fn is_temporary(name: &str) -> bool {
+    let process = name.strip_prefix('.').and_then(|n| n.strip_suffix(".tmp")).and_then(|n| n.rsplit_once('.'));
+    process.is_some_and(|(name, id)| !name.is_empty() && !id.is_empty() && id.bytes().all(|b| b.is_ascii_digit()))
+}
+
 fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut file: File = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
     file.write_all(content)?;
@@ -30,6 +51,22 @@ fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_temporary_files_are_leftovers() {
+        let dir = tempfile::tempdir().unwrap();
+        let mine = [".hidden", "a.7.tmp", ".a.tmp", ".a.b.tmp", ".riss.lock", "results.json"];
+        mine.iter()
+            .chain(&[".results.json.123.tmp", ".a.7.tmp"])
+            .for_each(|n| fs::write(dir.path().join(n), "").unwrap());
+        remove_leftovers(dir.path()).unwrap();
+        remove_leftovers(&dir.path().join("nowhere")).unwrap();
+        let mut left: Vec<_> = fs::read_dir(dir.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        left.sort();
+        let mut mine = mine.to_vec();
+        mine.sort();
+        assert_eq!(left, mine);
+    }
 
     #[test]
     fn replaces_whole_files_and_leaves_nothing_else() {
