@@ -1,21 +1,24 @@
 //! The moving least squares approximation over the nodes of a body in the plane, around cracks and holes.
 
+mod surroundings;
+
 use super::ShapeFunctions;
 use super::detour::Jet;
 use super::discontinuity::Barriers;
 use super::enriched_fit::fit_enriched_into;
-use super::enrichment::{Enrichment, EnrichmentBuffer, Place, TipPoint};
+use super::enrichment::{Enrichment, Place};
 use super::extra::Extra;
 use super::finite_elements::{FiniteElements, JoinedElement};
-use super::mls::{Neighborhood, fit_into, quality};
-use super::settings::{ApproximationSettings, SupportShape, WeightFunction};
-use super::sight::{Candidate, Sight, SightBuffer, View};
+use super::mls::{fit_into, quality};
+use super::settings::{ApproximationSettings, SupportShape};
+use super::sight::Sight;
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Obstacles;
 use crate::geometry::tree::BoxTree;
 use crate::math::Vector2;
 use crate::nodes::Nodes;
+pub use surroundings::Surroundings;
 
 /// Moment matrices with a smaller scaled pivot than this are poor.
 pub const POOR_PIVOT: f64 = 0.02;
@@ -29,28 +32,6 @@ pub enum Derivatives {
     First,
     /// Second derivatives too.
     Second,
-}
-
-/// What may matter around a point or a cell: nodes that may reach it, and obstacles that may hide them. A buffer.
-#[derive(Clone, Debug, Default)]
-pub struct Surroundings {
-    /// Nodes that may reach.
-    pub candidates: Vec<u32>,
-    /// Obstacles that may hide, and ways around them.
-    sight: SightBuffer,
-    /// Positions of the candidates, axis by axis.
-    positions: [Vec<f64>; 2],
-    /// Inverse squared support radii of the candidates, where supports are circular.
-    inverse: Vec<f64>,
-    /// Buffer of the fit.
-    pub near: Neighborhood<2>,
-    /// Regions around tips.
-    enrichment: EnrichmentBuffer,
-    tip: TipPoint,
-    /// Finite elements that may hold a point.
-    elements: Vec<u32>,
-    /// Plain shape functions, where they are joined to enriched ones.
-    plain: ShapeFunctions<2>,
 }
 
 /// Moving least squares over nodes that do not act across obstacles [EFG, sections 2.1, 2.2, 4].
@@ -141,131 +122,6 @@ impl MovingLeastSquares {
     /// The settings.
     pub fn settings(&self) -> &ApproximationSettings {
         &self.settings
-    }
-
-    /// Looks up what may matter for points in a box.
-    pub fn survey(&self, bounds: &Aabb<2>, around: &mut Surroundings) {
-        around.candidates.clear();
-        self.supports.visit(bounds, |i| around.candidates.push(i));
-        around.candidates.sort_unstable();
-        let mut reach = *bounds;
-        for &i in &around.candidates {
-            reach = reach.including(self.nodes.sights[i as usize]);
-        }
-        self.sight.survey(&reach, &around.candidates, &mut around.sight);
-        if let Some(enrichment) = &self.enrichment {
-            enrichment.survey(bounds, &mut around.enrichment);
-        }
-        if let Some(elements) = &self.elements {
-            elements.survey(bounds, &mut around.elements);
-        }
-        let [xs, ys] = &mut around.positions;
-        xs.clear();
-        ys.clear();
-        around.inverse.clear();
-        for &i in &around.candidates {
-            let (p, r) = (self.nodes.positions[i as usize], self.nodes.support_radii[i as usize].x);
-            xs.push(p.x);
-            ys.push(p.y);
-            around.inverse.push(1.0 / (r * r));
-        }
-    }
-
-    /// Gathers the neighbors of a point that was surveyed.
-    #[inline]
-    pub fn gather(&self, at: Vector2, sight: Vector2, derivatives: Derivatives, around: &mut Surroundings) {
-        around.sight.start_point();
-        let view = View { at, sight };
-        let relative = |c: &Candidate, buffer: &mut SightBuffer| self.sight.relative(&view, &self.nodes, c, buffer);
-        match self.settings.support {
-            SupportShape::Circular if around.sight.is_open() => self.gather_circular(at, around, |c, _| c.relative),
-            SupportShape::Circular => self.gather_circular(at, around, relative),
-            SupportShape::Rectangular => self.gather_rectangular(at, around, relative),
-        }
-        if derivatives == Derivatives::Second {
-            let (function, shape) = (self.settings.weight_function, self.settings.support);
-            let near = &mut around.near;
-            for (k, &i) in near.nodes.iter().enumerate() {
-                let offset = near.offset(k);
-                let second = function.second_derivatives(shape, &offset, &self.nodes.support_radii[i as usize]);
-                near.weight_second_derivatives.push(second);
-            }
-            around.sight.mend_second(function, &near.inverse, &mut near.weight_second_derivatives);
-        }
-    }
-
-    /// Disks: distances of all candidates at once, then the weights of those in reach.
-    ///
-    /// - `relative`: squared argument of the weight function of a candidate whose disk holds the point
-    #[inline]
-    fn gather_circular(
-        &self,
-        at: Vector2,
-        around: &mut Surroundings,
-        mut relative: impl FnMut(&Candidate, &mut SightBuffer) -> f64,
-    ) {
-        let Surroundings { candidates, sight, positions, inverse, near, .. } = around;
-        let n = candidates.len();
-        near.resize(n);
-        let [xs, ys] = positions;
-        let [ox, oy] = &mut near.offsets;
-        let mut m = 0;
-        // Every candidate is written, and overwritten by the next if it is out of reach: no branch to guess.
-        for (index, (((&node, &px), &py), &inverse2)) in
-            candidates.iter().zip(&*xs).zip(&*ys).zip(&*inverse).enumerate()
-        {
-            let (x, y) = (px - at.x, py - at.y);
-            let mut s2 = (x * x + y * y) * inverse2;
-            if s2 < 1.0 {
-                s2 = relative(&Candidate { index, neighbor: m, node, relative: s2, inverse: inverse2 }, sight);
-            }
-            near.nodes[m] = node;
-            ox[m] = x;
-            oy[m] = y;
-            near.relative[m] = s2;
-            near.inverse[m] = inverse2;
-            m += (s2 < 1.0) as usize;
-        }
-        near.resize(m);
-        let [gx, gy] = &mut near.weight_gradients;
-        self.settings.weight_function.values_and_slopes(&near.relative, &mut near.weights, gx);
-        sight.keep_slopes(gx);
-        let [ox, oy] = &near.offsets;
-        for k in 0..m {
-            let factor = -gx[k] * near.inverse[k];
-            gx[k] = factor * ox[k];
-            gy[k] = factor * oy[k];
-        }
-        sight.mend_gradients(&near.inverse, &mut near.weight_gradients);
-    }
-
-    /// Rectangles, which know visibility only.
-    #[inline(never)]
-    fn gather_rectangular(
-        &self,
-        at: Vector2,
-        around: &mut Surroundings,
-        mut relative: impl FnMut(&Candidate, &mut SightBuffer) -> f64,
-    ) {
-        let Surroundings { candidates, sight, near, .. } = around;
-        near.resize(candidates.len());
-        let mut m = 0;
-        for (index, &i) in candidates.iter().enumerate() {
-            let (offset, radii) = (self.nodes.positions[i as usize] - at, &self.nodes.support_radii[i as usize]);
-            let candidate = Candidate { index, neighbor: m, node: i, relative: 0.0, inverse: 0.0 };
-            if WeightFunction::reaches(SupportShape::Rectangular, &offset, radii) && relative(&candidate, sight) < 1.0 {
-                let (weight, gradient) =
-                    self.settings.weight_function.weight(SupportShape::Rectangular, &offset, radii);
-                near.nodes[m] = i;
-                near.weights[m] = weight;
-                for d in 0..2 {
-                    near.offsets[d][m] = offset[d];
-                    near.weight_gradients[d][m] = gradient[d];
-                }
-                m += 1;
-            }
-        }
-        near.resize(m);
     }
 
     /// Shape functions at a point that was surveyed, seen from `sight` (the point itself inside the body, a point
