@@ -144,10 +144,11 @@ impl JoinedElement {
     /// Shape functions where moving least squares have no part.
     pub(super) fn fill(&self, at: Vector2, derivatives: Derivatives, shape: &mut ShapeFunctions<2>) {
         let local = self.local(at);
-        let mut order: Vec<usize> = (0..self.nodes.len()).collect();
-        order.sort_by_key(|k| self.nodes[*k]);
+        let mut order = [0, 1, 2, 3];
+        let order = &mut order[..self.nodes.len()];
+        order.sort_unstable_by_key(|k| self.nodes[*k]);
         shape.reset(&[]);
-        for k in order {
+        for &mut k in order {
             shape.neighbors.push(self.nodes[k]);
             shape.values.push(local[k].value);
             shape.gradients.push(local[k].gradient);

@@ -137,18 +137,24 @@ impl TipSpacing {
     ///
     /// - `dilation`: support radius of the nodes over their spacing
     pub fn of_tips(model: &Model, nodes: &Nodes<2>, dilation: f64) -> Vec<Self> {
+        // The one in this place of an ascending list.
+        let spacing = |radii: &mut [f64], place: usize| match place < radii.len() {
+            true => *radii.select_nth_unstable_by(place, f64::total_cmp).1 / dilation,
+            false => f64::INFINITY,
+        };
         let mut radii: Vec<f64> = nodes.support_radii.iter().map(|r| r.max()).collect();
-        radii.sort_by(f64::total_cmp);
-        let elsewhere = radii.get((ELSEWHERE * radii.len() as f64) as usize).map_or(f64::INFINITY, |r| r / dilation);
+        let place = (ELSEWHERE * radii.len() as f64) as usize;
+        let elsewhere = spacing(&mut radii, place);
         let at = |tip: Vector2| {
-            let mut nearest: Vec<(f64, f64)> =
-                nodes.positions.iter().zip(&nodes.support_radii).map(|(p, r)| ((p - tip).norm(), r.max())).collect();
-            nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
-            nearest.truncate(NEAREST);
-            let mut radii: Vec<f64> = nearest.iter().map(|n| n.1).collect();
-            radii.sort_by(f64::total_cmp);
-            let at_tip = radii.get(radii.len() / 2).map_or(f64::INFINITY, |r| r / dilation);
-            Self { at_tip, elsewhere }
+            let mut nearest: Vec<(f64, usize)> =
+                nodes.positions.iter().enumerate().map(|(i, p)| ((p - tip).norm(), i)).collect();
+            if nearest.len() > NEAREST {
+                nearest.select_nth_unstable_by(NEAREST, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                nearest.truncate(NEAREST);
+            }
+            let mut radii: Vec<f64> = nearest.iter().map(|(_, i)| nodes.support_radii[*i].max()).collect();
+            let middle = radii.len() / 2;
+            Self { at_tip: spacing(&mut radii, middle), elsewhere }
         };
         model.tips().iter().map(|(_, frame)| at(frame.position)).collect()
     }
