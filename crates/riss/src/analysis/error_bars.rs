@@ -59,24 +59,32 @@ pub(super) fn widen_error_bars(
     let disks: Vec<TipDisk> = tips.iter().map(disk).collect();
     let errors = estimate_error_within(model, discrete, solution, &disks)?;
     let young = model.material.effective_young();
-    for ((tip, error), TipDisk { radius, .. }) in tips.iter_mut().zip(errors).zip(disks) {
+    for ((tip, error), TipDisk { radius, singular, .. }) in tips.iter_mut().zip(errors).zip(disks) {
         let (Some(k1), Some(k2), Some(spread)) = (tip.k1, tip.k2, tip.k_uncertainty) else { continue };
         let size = k1.hypot(k2);
         let part = size * numerical_part(error * young / (size * size * radius));
         // A tip without load has no part.
         let part = if part.is_finite() { part } else { 0.0 };
         let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
-        let smooth = enriched(discrete, tip.position).map_or(0.0, |_| {
-            ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2)
-        });
+        let smooth = match singular {
+            Some(_) => ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2),
+            None => 0.0,
+        };
         let bar = (spread + part + smooth).max(second);
         tip.k_uncertainty = Some(bar);
-        // J goes with the square of the factors.
-        tip.j_uncertainty = tip.j_uncertainty.map(|spread| spread.max((2.0 * size + bar) * bar / young));
+        tip.j_uncertainty = tip.j_uncertainty.map(|spread| spread.max(j_bar(size, bar, young)));
         let unit = (PI * radius).sqrt();
         tip.t_uncertainty = tip.t_uncertainty.map(|spread| T_SHARES[0] * spread + T_SHARES[1] * (part + smooth) / unit);
     }
     Ok(())
+}
+
+/// Bar of J that follows from that of the factors, with whose square it goes [stress·length].
+///
+/// - `size`: magnitude of the factors, `bar`: theirs [stress·√length]
+/// - `young`: Young's modulus of the plane state [stress]
+pub(super) fn j_bar(size: f64, bar: f64, young: f64) -> f64 {
+    (2.0 * size + bar) * bar / young
 }
 
 /// Coordinates at a tip whose field the nodes hold.

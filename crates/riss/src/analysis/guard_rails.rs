@@ -57,7 +57,10 @@ impl Rails<'_> {
             self.overlap(model, crack, result);
         }
         self.yielding(model, result);
-        self.holes(model, result);
+        // Holes do not change as cracks grow.
+        if result.step.step == 0 {
+            self.holes(model, result);
+        }
     }
 
     /// Turns of straight increments that are too sharp for their length.

@@ -65,7 +65,7 @@ pub(super) fn solve_step(
     if let CrackSmoothing::Transparency { .. } = settings.approximation.resolved_smoothing().cracks() {
         let n = nodes_too_near(model, &discrete);
         if n > 0 {
-            warnings.add(format!(
+            warnings.about("approximation.smoothing", format!(
                 "{n} nodes near crack tips are closer to the crack than a quarter of the node spacing: where the crack is \
                  transparent their functions have a trough ahead of the tip; move them away or use diffraction"
             ));
@@ -202,7 +202,10 @@ pub(super) fn solve_once(
         match (solve_in_contact(model, discrete, system, &method, settings.solver), method) {
             (Err(Error::Factorization { .. }), ConstraintMethod::Nitsche { factor }) if attempt < 3 => {
                 let factor = factor * STABILIZATION_GROWTH;
-                warnings.add(format!("the stabilization of the supports was too small and is now {factor}"));
+                warnings.about(
+                    "constraints",
+                    format!("the stabilization of the supports was too small and is now {factor}"),
+                );
                 method = ConstraintMethod::Nitsche { factor };
             }
             (result, _) => {
@@ -257,7 +260,7 @@ fn evaluate_tip(
     if !solution.tip_factors.is_empty() {
         match direct_factors(model, discrete, solution, id) {
             Some(factors) => [record.k1_direct, record.k2_direct] = factors.map(Some),
-            None => warnings.add(format!(
+            None => warnings.about_crack(id.crack, format!(
                 "no K_I_direct and K_II_direct of the tip at ({:.6}, {:.6}): its functions fade inside the body, and where they \
                  do they take what the nodes leave of the field, not K; K_I and K_II are not touched by that",
                 view.frame.position.x, view.frame.position.y

@@ -5,6 +5,7 @@
 //! `Δ ρ/(1-ρ)`. The factors converge no slower than the stress: ρ is that of its estimated error, the bar at least Δ.
 
 use super::energy::strain_energy;
+use super::error_bars::j_bar;
 use super::linear_static::{Solved, discretize, discretize_at, solve_on};
 use super::record::{CrackRecord, Observer, RefinementRecord, TipRecord};
 use super::settings::Settings;
@@ -81,7 +82,7 @@ pub(super) fn refine(
         match next_tree(accuracy, &model.domain, &tree, &solved, &estimate, records.len()) {
             Ok(finer) => tree = finer,
             Err(reason) => {
-                warnings.add(format!("{}: {reason}", shortfall(accuracy, record)));
+                warnings.about("accuracy", format!("{}: {reason}", shortfall(accuracy, record)));
                 return Ok((solved, records));
             }
         }
@@ -138,8 +139,10 @@ fn record(
         let [b1, b2] = before.factors[i];
         let change = (k1 - b1).abs().max((k2 - b2).abs());
         let bar = tip.k_uncertainty.unwrap_or(0.0).max(per_change * change);
+        let size = k1.hypot(k2);
         tip.k_uncertainty = Some(bar);
-        k_error = k_error.map(|e| e.max(bar / k1.hypot(k2).max(SHADOW * largest)));
+        tip.j_uncertainty = tip.j_uncertainty.map(|b| b.max(j_bar(size, bar, model.material.effective_young())));
+        k_error = k_error.map(|e| e.max(bar / size.max(SHADOW * largest)));
     }
     let (n_nodes, error_estimate) = (solved.discrete.n_nodes(), estimate.relative());
     Ok(RefinementRecord { n_nodes, error_estimate, energy_error, k_error, factors })
