@@ -9,7 +9,8 @@
 //! - the difference between `√(E' J)` and the factors.
 //!
 //! Where the nodes hold the field of the tip, it is not smoothed, and the estimate sees little: what is left is the error of
-//! polynomials in the rest of the field, which goes with the square of the supports over the size of the domain and is added.
+//! polynomials in the rest of the field, which goes with the square of the supports over the size of the domain, and more so
+//! where nodes become coarser within it.
 //!
 //! J goes with the square of the factors, and so does its bar, which is no less than its spread. That of the T-stress has
 //! shares of its spread and of what the discretization leaves out of the factors, over `√(πR)`.
@@ -30,9 +31,9 @@ use std::f64::consts::PI;
 const SHARE: f64 = 0.25;
 /// How fast that part grows with `λ`.
 const SHARE_GROWTH: f64 = 20.0;
-/// Part of the square of the largest support in the largest domain over its radius that is in a bar where nodes hold the
-/// field of the tip.
-const ENRICHED_SHARE: f64 = 0.006;
+/// Where nodes hold the field of the tip, a bar has these parts of the square of the support at the tip over the radius of
+/// the largest domain, and of what the largest support in the domain adds to that: nodes that become coarser within it.
+const ENRICHED_SHARES: [f64; 2] = [0.001, 0.008];
 
 /// Parts of the spread of the T-stress, and of what the discretization leaves out of the factors over `√(πR)`, that are
 /// in its bar.
@@ -67,7 +68,7 @@ pub(super) fn widen_error_bars(
         let part = if part.is_finite() { part } else { 0.0 };
         let second = tip.j.map_or(0.0, |j| ((young * j.max(0.0)).sqrt() - size).abs());
         let smooth = match singular {
-            Some(_) => ENRICHED_SHARE * size * (largest_support(discrete, tip.position, radius) / radius).powi(2),
+            Some(_) => size * smooth_part(discrete, tip.position, radius),
             None => 0.0,
         };
         let bar = (spread + part + smooth).max(second);
@@ -92,11 +93,21 @@ fn enriched(discrete: &Discretization, tip: Vector2) -> Option<&TipCoordinates> 
     discrete.approximation.enrichment()?.coordinates().find(|c| c.tip() == tip)
 }
 
-/// Radius of the largest support of a node in a disk [length].
-fn largest_support(discrete: &Discretization, center: Vector2, radius: f64) -> f64 {
+/// What polynomials leave out of the rest of the field where nodes hold that of the tip, over the size of the factors.
+fn smooth_part(discrete: &Discretization, tip: Vector2, radius: f64) -> f64 {
     let nodes = discrete.approximation.nodes();
-    let inside = nodes.positions.iter().zip(&nodes.support_radii).filter(|(p, _)| (*p - center).norm() < radius);
-    inside.map(|(_, support)| support.max()).fold(0.0, f64::max)
+    let (mut nearest, mut largest) = ((f64::INFINITY, 0.0), 0.0f64);
+    for (position, support) in nodes.positions.iter().zip(&nodes.support_radii) {
+        let (distance, support) = ((position - tip).norm(), support.max());
+        if distance < nearest.0 {
+            nearest = (distance, support);
+        }
+        if distance < radius {
+            largest = largest.max(support);
+        }
+    }
+    let [at_tip, most] = [nearest.1, largest.max(nearest.1)].map(|support| (support / radius).powi(2));
+    ENRICHED_SHARES[0] * at_tip + ENRICHED_SHARES[1] * (most - at_tip)
 }
 
 /// What the discretization leaves out, over the size of the factors, for a given `λ`.
