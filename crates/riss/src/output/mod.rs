@@ -4,7 +4,7 @@
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
-//! [`solid_report`], [`solid_picture`].
+//! [`solid_report`], [`solid_picture()`].
 
 mod color_map;
 pub mod comparison;
