@@ -4,11 +4,12 @@ use crate::claim::Claim;
 use crate::grow::{self, Speech};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
+use crate::resume::{self, Obstacle};
 use crate::run::RunArguments;
 use crate::sweep::{MOST_RUNS, combinations};
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, resume};
-use riss::analysis::linear_static;
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt};
+use riss::analysis::{RunSize, linear_static};
 use riss::case::Case;
 use riss::output::run_table::{RowStatus, RunRow, end_name, keys, table_csv, tips};
 use riss::output::{read_results, write_file};
@@ -58,8 +59,7 @@ pub fn run(arguments: &RunArguments) -> u8 {
 }
 
 fn cannot_write(dir: &Path, error: &io::Error) -> u8 {
-    eprintln!("error: cannot write the results to {}: {}", dir.display(), results::reason(error));
-    STOPPED
+    crate::fail(&format!("cannot write the results to {}: {}", dir.display(), results::reason(error)))
 }
 
 /// `NAME.riss-sweep` for one case, `riss-out` for several.
@@ -87,6 +87,10 @@ fn jobs(arguments: &RunArguments, folder: &Path) -> Result<Vec<Job>, u8> {
             let overrides: Vec<String> = arguments.overrides.iter().cloned().chain(values).collect();
             match Case::read(path, &overrides) {
                 Ok(case) => {
+                    let size = RunSize::of_plane(&case.model, &case.settings, case.growth.as_ref());
+                    if let Some(reason) = arguments.memory_limit.refusal(&size) {
+                        return Err(refuse(&format!("{}: {reason}", path.display())));
+                    }
                     if !arguments.quiet && set == &sets[0] {
                         diagnostics::report_notes(&case);
                     }
@@ -107,7 +111,7 @@ fn jobs(arguments: &RunArguments, folder: &Path) -> Result<Vec<Job>, u8> {
 }
 
 fn refuse(message: &str) -> u8 {
-    eprintln!("error: {message}");
+    crate::fail(message);
     BAD_CASE
 }
 
@@ -166,7 +170,7 @@ fn run_one(job: &Job) -> RunRow {
     let folder = job.folder.display().to_string();
     let outcome = match &job.case.growth {
         None => run_static(job),
-        Some(growth) => resume::begin(&job.case, &job.folder).and_then(|beginning| {
+        Some(growth) => resume::begin(&job.case, &job.folder).map_err(Obstacle::message).and_then(|beginning| {
             grow::follow(&job.case, growth, beginning, &job.folder, Progress::new(true), Speech::Nothing).map(drop)
         }),
     };

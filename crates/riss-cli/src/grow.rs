@@ -52,8 +52,7 @@ pub fn grow(
     let followed = match follow(case, growth, beginning, dir, progress, speech) {
         Ok(followed) => followed,
         Err(message) => {
-            eprintln!("error: {message}");
-            return STOPPED;
+            return crate::fail(&message);
         }
     };
     match speech {
@@ -146,6 +145,11 @@ impl Observer for Watch<'_> {
 
     fn step(&mut self, result: &StaticResult, state: Option<&GrowthState>) -> ControlFlow<()> {
         let times = self.progress.take_stages();
+        crate::log::solved(result);
+        step_lines(&result.step).iter().for_each(|line| tracing::info!("{}", line.trim()));
+        if let Some(end) = &result.step.end {
+            tracing::info!("growth ended: {}", end.reason);
+        }
         if self.speech == Speech::Table {
             step_lines(&result.step).iter().for_each(|line| self.progress.line(line));
             table::warnings(self.case, result).lines().for_each(|line| self.progress.line(line));

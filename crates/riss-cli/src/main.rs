@@ -21,7 +21,9 @@ mod export;
 mod grow;
 mod import;
 mod interrupt;
+mod log;
 mod manual;
+mod memory;
 mod new;
 mod progress;
 mod report;
@@ -118,6 +120,13 @@ fn main() -> ExitCode {
         Command::Man(arguments) => manual::man(&arguments),
     };
     ExitCode::from(code)
+}
+
+/// Says why there is no result, also in the log; returns the exit code.
+fn fail(message: &str) -> u8 {
+    tracing::error!("{message}");
+    eprintln!("error: {message}");
+    STOPPED
 }
 
 /// What a user is told when the program itself fails; the exit code is then 101.

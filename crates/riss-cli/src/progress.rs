@@ -68,7 +68,9 @@ impl Progress {
 
     fn end_stage(&mut self) {
         if let Some((stage, since)) = self.current.take() {
-            self.stage_time_s.push((stage.name().into(), since.elapsed().as_secs_f64()));
+            let time = since.elapsed().as_secs_f64();
+            tracing::info!("{} took {time:.3} s", stage.name());
+            self.stage_time_s.push((stage.name().into(), time));
         }
     }
 }
@@ -76,6 +78,7 @@ impl Progress {
 impl Observer for Progress {
     fn stage(&mut self, stage: Stage) {
         self.end_stage();
+        tracing::debug!("{} begins", stage.name());
         match &self.display {
             Display::Bar(bar) => bar.set_message(stage.name()),
             Display::Lines if self.taken == 0 => eprintln!("{}", stage.name()),
@@ -87,6 +90,7 @@ impl Observer for Progress {
 
     fn refinement(&mut self, record: &RefinementRecord) {
         let text = crate::table::refinement_line(record);
+        tracing::info!("refined: {text}");
         match &self.display {
             Display::Bar(bar) => bar.println(text),
             Display::Lines => eprintln!("{text}"),
@@ -95,6 +99,7 @@ impl Observer for Progress {
     }
 
     fn warning(&mut self, warning: &Warning) {
+        tracing::warn!("{warning}");
         // Warnings return with the result; on a long run they are worth showing at once.
         if let Display::Bar(bar) = &self.display {
             bar.println(format!("warning: {warning}"));

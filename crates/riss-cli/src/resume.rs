@@ -10,6 +10,23 @@ use std::path::{Path, PathBuf};
 /// The case as the run began with it, in the folder of results.
 const CASE_COPY: &str = "restart/case.json";
 
+/// Why a run does not begin.
+pub enum Obstacle {
+    /// What is asked for makes no sense.
+    Request(String),
+    /// The folder cannot be written.
+    Folder(String),
+}
+
+impl Obstacle {
+    /// The reason.
+    pub fn message(self) -> String {
+        match self {
+            Self::Request(message) | Self::Folder(message) => message,
+        }
+    }
+}
+
 /// What a run began with.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -23,8 +40,8 @@ pub struct Resumed {
 }
 
 /// Begins a run in a folder, and keeps there what is needed to go on with it.
-pub fn begin(case: &Case, dir: &Path) -> Result<Beginning, String> {
-    let failed = |e: std::io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(&e));
+pub fn begin(case: &Case, dir: &Path) -> Result<Beginning, Obstacle> {
+    let failed = |e: std::io::Error| cannot_write(dir, &e);
     // Killed in between, the results of one case must not stand beside the text of another.
     match std::fs::remove_file(dir.join(CASE_COPY)) {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(failed(e)),
@@ -33,7 +50,7 @@ pub fn begin(case: &Case, dir: &Path) -> Result<Beginning, String> {
     let writer = RunWriter::new(dir, results::options(case)).map_err(failed)?;
     let path = case.path.canonicalize().unwrap_or_else(|_| case.path.clone());
     let copy = Resumed { case: path, text: case.text.clone(), overrides: case.overrides.clone() };
-    let text = serde_json::to_vec_pretty(&copy).map_err(|e| e.to_string())?;
+    let text = serde_json::to_vec_pretty(&copy).map_err(|e| Obstacle::Request(e.to_string()))?;
     write_file(dir, CASE_COPY, &text).map_err(failed)?;
     writer.describe(&results::source(case)).map_err(failed)?;
     Ok(Beginning { writer, state: None })
@@ -49,31 +66,41 @@ impl Resumed {
     }
 
     /// The folder from a step on; the case may differ from that of the earlier run in its growth settings only.
-    pub fn beginning(&self, case: &Case, dir: &Path, from_step: Option<usize>) -> Result<Beginning, String> {
+    pub fn beginning(&self, case: &Case, dir: &Path, from_step: Option<usize>) -> Result<Beginning, Obstacle> {
+        let refused = |message: String| Obstacle::Request(message);
         let before = Case::parse(&self.text, &self.case, &self.overrides)
-            .map_err(|_| format!("{CASE_COPY} in {} cannot be read any more", dir.display()))?;
+            .map_err(|_| refused(format!("{CASE_COPY} in {} cannot be read any more", dir.display())))?;
         if let Some(key) = before.differs_outside_growth(case) {
-            return Err(format!(
+            return Err(refused(format!(
                 "{} differs from the case of {} in `{key}`; only [growth] and [output] may change in between",
                 case.path.display(),
                 dir.display()
-            ));
+            )));
         }
         if from_step.unwrap_or(0) == 0 && !dir.join(RESULTS_FILE).exists() {
             // Stopped before its first step was complete.
             return begin(case, dir);
         }
-        let results = read_results(dir).map_err(|e| format!("the results in {} cannot be read: {e}", dir.display()))?;
+        let results =
+            read_results(dir).map_err(|e| refused(format!("the results in {} cannot be read: {e}", dir.display())))?;
         let last = results.steps.last().map_or(0, |s| s.step);
         let step = from_step.unwrap_or(last);
         if step > last {
-            return Err(format!("step {step} is not in {}; the last one there is {last}", dir.display()));
+            return Err(refused(format!("step {step} is not in {}; the last one there is {last}", dir.display())));
         }
         let state = restart_state(dir, step)
-            .map_err(|e| format!("the state of step {step} in {} cannot be read: {e}", dir.display()))?;
-        let writer = RunWriter::resume(dir, results::options(case), step)
-            .map_err(|e| format!("the results in {} cannot be continued: {}", dir.display(), results::reason(&e)))?;
-        writer.describe(&results::source(case)).map_err(|e| results::reason(&e))?;
+            .map_err(|e| refused(format!("the state of step {step} in {} cannot be read: {e}", dir.display())))?;
+        let writer = RunWriter::resume(dir, results::options(case), step).map_err(|e| match e.kind() {
+            std::io::ErrorKind::InvalidData => {
+                refused(format!("the results in {} cannot be continued: {}", dir.display(), results::reason(&e)))
+            }
+            _ => cannot_write(dir, &e),
+        })?;
+        writer.describe(&results::source(case)).map_err(|e| cannot_write(dir, &e))?;
         Ok(Beginning { writer, state: Some(state) })
     }
+}
+
+fn cannot_write(dir: &Path, error: &std::io::Error) -> Obstacle {
+    Obstacle::Folder(format!("cannot write the results to {}: {}", dir.display(), results::reason(error)))
 }

@@ -2,13 +2,15 @@
 
 use crate::claim::Claim;
 use crate::grow::{self, Speech};
+use crate::log::{self, LogArguments};
+use crate::memory::MemoryLimit;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
-use crate::resume::{self, Resumed};
+use crate::resume::{self, Obstacle, Resumed};
 use crate::sweep::Sweep;
-use crate::{BAD_CASE, DONE, STOPPED, batch, desktop, diagnostics, interrupt, solid, table};
+use crate::{BAD_CASE, DONE, batch, desktop, diagnostics, interrupt, solid, table};
 use clap::Args;
-use riss::analysis::{StaticResult, linear_static};
+use riss::analysis::{RunSize, StaticResult, linear_static};
 use riss::case::{AnyCase, Case};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -53,6 +55,11 @@ pub struct RunArguments {
     /// Opens the report in the browser of the desktop; not for several runs
     #[arg(long, conflicts_with = "sweeps")]
     pub open: bool,
+    /// Refuses a run that needs more memory, such as 12GB: `free` is what the machine has, `none` is no limit
+    #[arg(long, value_name = "SIZE", default_value = "free", value_parser = MemoryLimit::parse)]
+    pub memory_limit: MemoryLimit,
+    #[command(flatten)]
+    pub log: LogArguments,
     /// Shows no progress and no notes
     #[arg(long, short)]
     pub quiet: bool,
@@ -65,6 +72,15 @@ pub fn run(arguments: &RunArguments) -> u8 {
     {
         return refuse(&format!("cannot start {n} threads: {e}"));
     }
+    if let Err(e) = arguments.log.start() {
+        return crate::fail(&e);
+    }
+    let code = run_all(arguments);
+    tracing::info!("exit code {code}");
+    code
+}
+
+fn run_all(arguments: &RunArguments) -> u8 {
     match arguments.cases.len() {
         0 | 1 if arguments.sweeps.is_empty() => run_one(arguments),
         0 | 1 => batch::run(arguments),
@@ -97,6 +113,12 @@ fn run_one(arguments: &RunArguments) -> u8 {
     if !arguments.quiet {
         diagnostics::report_notes(&case);
     }
+    let size = RunSize::of_plane(&case.model, &case.settings, case.growth.as_ref());
+    log::begin(&path, &case.model.title, case.settings.method.name(), &size);
+    case.notes.iter().for_each(|n| tracing::warn!("{}: {n}", case.place(n)));
+    if let Some(reason) = arguments.memory_limit.refusal(&size) {
+        return refuse(&reason);
+    }
     let dir = match &arguments.resume {
         Some(dir) => dir.clone(),
         None => arguments.out.clone().unwrap_or_else(|| results::default_folder(&path)),
@@ -115,7 +137,7 @@ fn run_one(arguments: &RunArguments) -> u8 {
 }
 
 fn analyze(arguments: &RunArguments, case: &Case, known: Option<Resumed>, dir: &Path) -> u8 {
-    let progress = Progress::new(arguments.quiet);
+    let progress = Progress::new(arguments.quiet || arguments.log.is_on_terminal());
     match (&case.growth, known) {
         (None, None) => run_static(arguments, case, dir, progress),
         (None, Some(_)) => refuse("the case has no [growth]: there is nothing to go on with"),
@@ -127,14 +149,15 @@ fn analyze(arguments: &RunArguments, case: &Case, known: Option<Resumed>, dir: &
             let speech = if arguments.json { Speech::Json } else { Speech::Table };
             match beginning {
                 Ok(beginning) => grow::grow(case, growth, beginning, dir, progress, speech),
-                Err(message) => refuse(&message),
+                Err(Obstacle::Request(message)) => refuse(&message),
+                Err(Obstacle::Folder(message)) => crate::fail(&message),
             }
         }
     }
 }
 
 fn refuse(message: &str) -> u8 {
-    eprintln!("error: {message}");
+    crate::fail(message);
     BAD_CASE
 }
 
@@ -143,14 +166,12 @@ fn run_static(arguments: &RunArguments, case: &Case, dir: &Path, mut progress: P
     let wall_time_s = progress.finish();
     match outcome {
         Ok(result) => {
+            log::solved(&result);
             let stage_time_s = std::mem::take(&mut progress.stage_time_s);
             let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
             deliver(arguments, dir, case, &run, &result)
         }
-        Err(error) => {
-            eprintln!("error: {error}");
-            STOPPED
-        }
+        Err(error) => crate::fail(&error.to_string()),
     }
 }
 
@@ -178,6 +199,5 @@ fn deliver(arguments: &RunArguments, dir: &Path, case: &Case, run: &RunRecord, r
 }
 
 fn cannot_write(dir: &Path, error: &io::Error) -> u8 {
-    eprintln!("error: cannot write the results to {}: {}", dir.display(), results::reason(error));
-    STOPPED
+    crate::fail(&format!("cannot write the results to {}: {}", dir.display(), results::reason(error)))
 }

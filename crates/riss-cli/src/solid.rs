@@ -4,8 +4,8 @@ use crate::claim::Claim;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::number;
-use crate::{DONE, STOPPED, desktop, diagnostics, results};
-use riss::analysis::{FrontRecord, SolidResult, solid_nodes, solid_static};
+use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, log, results};
+use riss::analysis::{FrontRecord, RunSize, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
 use riss::output::whole_file::write_whole;
 use riss::output::{
@@ -19,20 +19,25 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
     if !arguments.quiet {
         diagnostics::report_solid_notes(case);
     }
+    let size = RunSize::of_solid(&case.model, &case.settings);
+    log::begin(&case.path, &case.model.title, "collocation", &size);
+    case.notes.iter().for_each(|n| tracing::warn!("{}: {n}", case.place(n)));
+    if let Some(reason) = arguments.memory_limit.refusal(&size) {
+        crate::fail(&reason);
+        return BAD_CASE;
+    }
     let _claim = match Claim::of(dir) {
         Ok(claim) => claim,
         Err(e) => return cannot_write("the results", dir, &e),
     };
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet || arguments.log.is_on_terminal());
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();
     let result = match outcome {
         Ok(result) => result,
-        Err(error) => {
-            eprintln!("error: {error}");
-            return STOPPED;
-        }
+        Err(error) => return crate::fail(&error.to_string()),
     };
+    log::solved_solid(&result);
     let info = RunInfo {
         title: case.model.title.clone(),
         method: "collocation".into(),
@@ -70,6 +75,13 @@ fn summary(case: &SolidCase, result: &SolidResult, wall_time_s: f64) -> String {
     text += &format!(", {} with {} products\n", effort.method, effort.iterations);
     for front in &result.fronts {
         text += &front_table(&case.model.crack_names[front.crack], front);
+    }
+    if !result.warnings.is_empty() {
+        text.push('\n');
+    }
+    for warning in &result.warnings {
+        let place = warning.key.as_ref().map_or(String::new(), |key| format!("{}: ", case.place_of(key)));
+        text += &format!("warning: {place}{warning}\n");
     }
     text
 }
@@ -122,8 +134,7 @@ pub fn check(case: &SolidCase, out: Option<PathBuf>) -> u8 {
 }
 
 fn cannot_write(what: &str, dir: &Path, error: &io::Error) -> u8 {
-    eprintln!("error: cannot write {what} to {}: {}", dir.display(), results::reason(error));
-    STOPPED
+    crate::fail(&format!("cannot write {what} to {}: {}", dir.display(), results::reason(error)))
 }
 
 /// A line of the description.

@@ -1,10 +1,11 @@
 //! `cargo xtask tidy`: the manners of the code that no compiler checks.
 //!
 //! [`layers`] reads which folders a file uses, [`citations`] looks up sources, [`words`] refuses empty names and open
-//! ends, [`cases`] looks into the case folders. All work on text: [`source`] tells code from comments.
+//! ends, [`cases`] looks into the case folders, [`dependencies`] at what we build on. All work on text: [`source`] tells code from comments.
 
 pub mod cases;
 pub mod citations;
+pub mod dependencies;
 pub mod layers;
 pub mod links;
 pub mod source;
@@ -100,6 +101,7 @@ pub fn check(root: &Path) -> Findings {
         }
     }
     cases::check(root, &mut findings);
+    dependencies::check(root, &mut findings);
     links::check(root, &mut findings);
     findings
 }

@@ -11,7 +11,7 @@ use crate::model::Model;
 use std::f64::consts::PI;
 
 /// A length must be this many times `(K/σ_Y)²` for the plastic zone to be small against it [Dowling2013, section 8.7].
-const LINEAR: f64 = 4.0 / PI;
+pub(super) const LINEAR: f64 = 4.0 / PI;
 /// The thickness must be this many times `(K/σ_Y)²` for plane strain at the tip [ASTME399].
 const PLANE_STRAIN: f64 = 2.5;
 /// Radius of the plastic zone ahead of a tip over `(K/σ_Y)²` in plane stress, the larger one [Irwin1960].
@@ -19,13 +19,13 @@ const PLASTIC_RADIUS: f64 = 1.0 / (2.0 * PI);
 /// Share of the body that may be beyond yield away from tips: corners and supports always are.
 const YIELDED: f64 = 0.05;
 /// Least number of node spacings over a ligament.
-const OVER_LIGAMENT: f64 = 4.0;
+pub(super) const OVER_LIGAMENT: f64 = 4.0;
 /// Least number of nodes around a hole.
 const AROUND_HOLE: usize = 16;
 /// Overlap of crack faces over the largest opening or sliding that is beyond numerical noise.
 const OVERLAP: f64 = 0.01;
 /// The same over the difference of displacements along a face, for cracks that hardly open or slide.
-const OVERLAP_OF_STILL: f64 = 0.001;
+pub(super) const OVERLAP_OF_STILL: f64 = 0.001;
 /// Turn between two straight increments beyond which a path lags behind its curvature [rad].
 const SHARP_TURN: f64 = 0.35;
 

@@ -1,5 +1,6 @@
 //! What the analysis of a solid finds.
 
+use super::warnings::Warning;
 use crate::crack::{CrackSurface, FrontPoint};
 use crate::fracture::FrontFactors;
 use crate::geometry::surface::makers::across;
@@ -28,6 +29,8 @@ pub struct SolidResult {
     pub fronts: Vec<FrontRecord>,
     /// What the linear solver did.
     pub effort: SolverEffort,
+    /// What deserves a second look.
+    pub warnings: Vec<Warning>,
 }
 
 /// A front with its fracture quantities.

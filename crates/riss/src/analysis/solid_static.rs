@@ -1,7 +1,9 @@
 //! Static analysis of a cracked solid by point collocation [C3D].
 
 use super::record::{Observer, Stage};
+use super::solid_guard_rails::inspect;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
+use super::warnings::Warnings;
 use crate::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
 use crate::crack::{CrackFront, FrontPoint};
 use crate::error::Result;
@@ -121,8 +123,12 @@ pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut
         opened_cracks: vec![],
         fronts: records,
         effort: solution.effort,
+        warnings: vec![],
     };
     result.opened_cracks = (0..model.cracks.len()).map(|c| result.opened_crack(&model.cracks[c], c)).collect();
+    let mut warnings = Warnings::new(observer);
+    inspect(model, settings, &result, &mut warnings);
+    result.warnings = warnings.list;
     Ok(result)
 }
 

@@ -9,6 +9,7 @@ mod check;
 mod document;
 mod effective;
 mod expression;
+mod files;
 pub mod gmsh;
 mod problem;
 mod schema;
@@ -18,12 +19,12 @@ mod values;
 
 use crate::analysis::{GrowthSettings, Settings};
 use crate::model::{Model, UnitNames};
-pub use abaqus::import_abaqus;
+pub use abaqus::{import_abaqus, read_abaqus_as_case};
 use build::Built;
 use document::Document;
 pub use problem::{CaseErrors, Origin, Problem};
 pub use schema::OutputSettings;
-pub use solid::{AnyCase, SolidCase, solid_json_schema};
+pub use solid::{AnyCase, SolidCase, read_stl, solid_json_schema};
 use std::path::{Path, PathBuf};
 
 /// Larger files are refused.
@@ -114,13 +115,13 @@ impl Case {
         }
     }
 
-    /// The first top-level key, apart from `growth`, `output` and `title`, in which another case says something else.
+    /// The first top-level key, apart from `files`, `growth`, `output` and `title`, in which another case says something else.
     pub fn differs_outside_growth(&self, other: &Self) -> Option<String> {
         let tree = |case: &Self| Document::parse(&case.text, &case.overrides, &mut vec![]).to_toml();
         let (mine, yours) = (tree(self), tree(other));
         let mut keys: Vec<&String> = mine.keys().chain(yours.keys()).collect();
         keys.sort();
-        let may_change = |key: &str| ["growth", "output", "title"].contains(&key);
+        let may_change = |key: &str| ["files", "growth", "output", "title"].contains(&key);
         keys.into_iter().find(|k| !may_change(k) && mine.get(*k) != yours.get(*k)).cloned()
     }
 
@@ -173,7 +174,11 @@ fn allow_texts(schema: &mut serde_json::Value) {
 
 /// The text of a file.
 fn read_text(path: &Path, max_bytes: u64) -> Result<String, Box<Problem>> {
-    let bytes = read_bytes(path, max_bytes)?;
+    text_of(read_bytes(path, max_bytes)?)
+}
+
+/// Bytes as text.
+fn text_of(bytes: Vec<u8>) -> Result<String, Box<Problem>> {
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         Box::new(Problem::new("", format!("the file is not UTF-8 text (first bad byte: number {})", at + 1)))

@@ -1,5 +1,6 @@
 //! Simple polygons given by their corners.
 
+use super::aabb::Aabb;
 use super::predicates::{orientation, segments_cross};
 use crate::math::{Vector2, cross};
 
@@ -47,6 +48,31 @@ pub fn self_crossing(corners: &[Vector2]) -> Option<(usize, usize)> {
         }
     }
     None
+}
+
+/// The part of a polygon inside a box, half plane by half plane [Sutherland1974]; pieces that fall apart stay joined along
+/// the sides of the box.
+pub fn clipped(corners: &[Vector2], bounds: &Aabb<2>) -> Vec<Vector2> {
+    let mut polygon = corners.to_vec();
+    for axis in 0..2 {
+        for (bound, sign) in [(bounds.lower[axis], 1.0), (bounds.upper[axis], -1.0)] {
+            let depth = |p: &Vector2| sign * (p[axis] - bound);
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for (p, q) in edges(&polygon) {
+                let (dp, dq) = (depth(&p), depth(&q));
+                if dp >= 0.0 {
+                    kept.push(p);
+                }
+                if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
+                    let mut cut = p + (q - p) * (dp / (dp - dq));
+                    cut[axis] = bound;
+                    kept.push(cut);
+                }
+            }
+            polygon = kept;
+        }
+    }
+    polygon
 }
 
 #[cfg(test)]

@@ -64,7 +64,7 @@ pub fn closest([a, b, c]: Triangle, p: Vector3) -> (Vector3, Feature) {
         return (b, Feature::Corner(1));
     }
     let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
         return (a + ab * (d1 / (d1 - d3)), Feature::Edge(0));
     }
     let cp = p - c;
@@ -73,16 +73,38 @@ pub fn closest([a, b, c]: Triangle, p: Vector3) -> (Vector3, Feature) {
         return (c, Feature::Corner(2));
     }
     let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
         return (a + ac * (d2 / (d2 - d6)), Feature::Edge(2));
     }
     let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 && (d4 - d3) + (d5 - d6) > 0.0 {
         let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return (b + (c - b) * t, Feature::Edge(1));
     }
-    let scale = 1.0 / (va + vb + vc);
+    let whole = va + vb + vc;
+    if !(whole > 0.0) {
+        return closest_on_edges([a, b, c], p);
+    }
+    let scale = 1.0 / whole;
     (a + ab * (vb * scale) + ac * (vc * scale), Feature::Face)
+}
+
+/// The same for a triangle that has no area in numbers.
+#[cold]
+fn closest_on_edges(corners: Triangle, p: Vector3) -> (Vector3, Feature) {
+    let on_edge = |k: usize| {
+        let (a, e) = (corners[k], corners[(k + 1) % 3] - corners[k]);
+        let length2 = e.norm_squared();
+        let t = if length2 > 0.0 { ((p - a).dot(&e) / length2).clamp(0.0, 1.0) } else { 0.0 };
+        (a + e * t, Feature::Edge(k))
+    };
+    let mut best = on_edge(0);
+    for found in [on_edge(1), on_edge(2)] {
+        if (found.0 - p).norm() < (best.0 - p).norm() {
+            best = found;
+        }
+    }
+    best
 }
 
 /// The segment in which two triangles meet, if they cross.
@@ -149,6 +171,16 @@ mod tests {
         assert_eq!(orientation3(a, b, c, v(0.3, 0.3, 2.0)), 2.0);
         assert!(orientation3(a, b, c, v(0.3, 0.3, -1e-300)) < 0.0);
         assert_eq!(area_vector(unit()), v(0.0, 0.0, 1.0));
+    }
+
+    /// Found by fuzzing: two corners at one place gave no number.
+    #[test]
+    fn flat_triangles_have_closest_points() {
+        let (a, b, p) = (v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(1.0, 1.0, 0.0));
+        for corners in [[a, a, b], [a, b, b], [b, a, b], [a, b, v(1.0, 0.0, 0.0)]] {
+            assert_eq!(closest(corners, p).0, v(1.0, 0.0, 0.0), "{corners:?}");
+        }
+        assert_eq!(closest([a, a, a], p).0, a);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::rules::{graded_line, triangle_rule};
 use super::settings::{IntegrationSettings, TipRule};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
-use crate::geometry::polygon::{area, edges};
+use crate::geometry::polygon::{area, clipped, edges};
 use crate::geometry::tree::BoxTree;
 use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::{Vector2, cross, turn_left};
@@ -103,7 +103,7 @@ impl IntegrationCells {
         pieces.tree.visit(square, |i| found.push(i));
         found.sort_unstable();
         for i in found {
-            let piece = clip(&pieces.triangles[i as usize], square);
+            let piece = clipped(&pieces.triangles[i as usize], square);
             if piece.len() < 3 || area(&piece) < SLIVER * square.size().product() {
                 continue;
             }
@@ -190,30 +190,6 @@ impl Pieces {
         let lines: Vec<_> = boundary.map(|ends| Aabb::of_points(ends.map(|i| chains.positions[i as usize]))).collect();
         Ok(Self { triangles, tree: BoxTree::new(&boxes), lines: BoxTree::new(&lines) })
     }
-}
-
-/// The part of a triangle inside a box.
-fn clip(triangle: &[Vector2; 3], square: &Aabb<2>) -> Vec<Vector2> {
-    let mut polygon = triangle.to_vec();
-    for axis in 0..2 {
-        for (bound, sign) in [(square.lower[axis], 1.0), (square.upper[axis], -1.0)] {
-            let depth = |p: &Vector2| sign * (p[axis] - bound);
-            let mut kept = Vec::with_capacity(polygon.len() + 1);
-            for (p, q) in edges(&polygon) {
-                let (dp, dq) = (depth(&p), depth(&q));
-                if dp >= 0.0 {
-                    kept.push(p);
-                }
-                if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
-                    let mut cut = p + (q - p) * (dp / (dp - dq));
-                    cut[axis] = bound;
-                    kept.push(cut);
-                }
-            }
-            polygon = kept;
-        }
-    }
-    polygon
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ pub struct SolidModel {
     pub crack_names: Vec<String>,
     /// The cracks.
     pub cracks: Vec<CrackSurface>,
+    /// Yield stress, if the case says it [stress].
+    pub yield_stress: Option<f64>,
     /// Material, loads and supports.
     pub solid: Solid<3>,
 }

@@ -1,10 +1,11 @@
 //! Whether a spacing asks for too many nodes, found out before any is placed.
 
 use super::generation::MAX_NODES;
+use super::settings::{Layout, NodeSettings};
 use super::spacing::SpacingField;
 use crate::error::{Error, Result};
 use crate::math::Vector2;
-use crate::model::Domain;
+use crate::model::{Domain, Model};
 
 /// Cells along each axis to begin with, and how often they may be split.
 const GRID: usize = 16;
@@ -37,6 +38,26 @@ pub(super) fn too_many(n: Option<f64>) -> Error {
     let reason =
         format!("the spacing asks for more than {MAX_NODES} nodes{number}; choose a larger one or a faster growth");
     Error::NodeGeneration { reason }
+}
+
+/// About how many nodes a layout asks for, without those of stars and crack tips on even grids.
+pub fn estimated_layout(model: &Model, settings: &NodeSettings) -> f64 {
+    match &settings.layout {
+        Layout::Graded(graded) => {
+            let everywhere = graded.spacing.map_or(0.0, |h| model.domain.area() / h.powi(2));
+            let margin = 10.0 * MARGIN * MAX_NODES as f64;
+            // What is absurd is not counted.
+            if everywhere > margin {
+                return everywhere;
+            }
+            estimated_nodes(&model.domain, &SpacingField::of_model(model, graded))
+        }
+        Layout::Structured(grid) => {
+            let size = model.domain.aabb().size();
+            grid.nx as f64 * grid.ny as f64 * model.domain.area() / (size.x * size.y)
+        }
+        Layout::Listed(listed) => listed.positions.len() as f64,
+    }
 }
 
 /// About how many nodes a spacing asks for: the integral of 1 over its square. Stops counting where it is too much already.

@@ -21,7 +21,7 @@ pub mod support;
 pub mod triangulation;
 
 use crate::math::Vector;
-pub use budget::estimated_nodes;
+pub use budget::{estimated_layout, estimated_nodes};
 pub use chains::BoundarySegment;
 pub use generation::{Layered, generate, generate_at};
 pub use settings::NodeSettings;

@@ -52,6 +52,7 @@ pub fn solid_report(results: &SolidResults) -> String {
          <style>{STYLE}</style>\n<h1>{title}</h1>\n<p class=\"quiet\">{}</p>\n",
         html(&summary(results))
     );
+    push_warnings(&mut page, results);
     for (index, front) in results.fronts.iter().enumerate() {
         push_front(&mut page, index, front);
     }
@@ -68,6 +69,15 @@ fn summary(results: &SolidResults) -> String {
         "riss {}, {}: {} nodes, {} unknowns{time}{memory}; {} with {} products",
         results.riss, results.method, results.nodes, results.unknowns, solver.method, solver.iterations
     )
+}
+
+fn push_warnings(page: &mut String, results: &SolidResults) {
+    if results.warnings.is_empty() {
+        return;
+    }
+    page.push_str("<section>\n<h2>Warnings</h2>\n<ul>\n");
+    results.warnings.iter().for_each(|w| page.push_str(&format!("<li>{}\n", html(w))));
+    page.push_str("</ul>\n</section>\n");
 }
 
 fn push_front(page: &mut String, index: usize, front: &FrontResults) {

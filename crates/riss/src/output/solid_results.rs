@@ -35,6 +35,8 @@ pub struct SolidResults {
     pub peak_memory_bytes: Option<u64>,
     /// What the linear solver did.
     pub solver: SolverResults,
+    /// What deserves a second look: key of the case, what happened, what to do.
+    pub warnings: Vec<String>,
     /// Names of the other files of this run, in the same folder.
     pub files: Vec<String>,
     /// Largest stresses at nodes.
@@ -172,6 +174,7 @@ impl SolidResults {
                 iterations: effort.iterations,
                 residual: finite(effort.residual),
             },
+            warnings: result.warnings.iter().map(ToString::to_string).collect(),
             files,
             stress: stress(result),
             cracks: cracks.collect(),

@@ -116,6 +116,34 @@ fn the_report_of_a_solid_has_its_numbers_and_escapes_names() {
 }
 
 #[test]
+fn what_the_user_wrote_is_never_markup_in_reports_of_solids() {
+    const ATTACK: &str = "</script></title><img src=x onerror=\"alert(1)\"> ' & <!--";
+    let (case, result) = solved();
+    let mut model = case.model.clone();
+    model.crack_names = vec![ATTACK.into(); 2];
+    let mut result = result.clone();
+    result.warnings = vec![riss::analysis::Warning { key: Some("crack[0]".into()), message: ATTACK.into() }];
+    let info =
+        RunInfo { title: ATTACK.into(), method: ATTACK.into(), stage_time_s: vec![(ATTACK.into(), 1.0)], ..info() };
+    let dir = tempfile::tempdir().unwrap();
+    write_solid_results(dir.path(), &model, &info, &result).unwrap();
+    let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).unwrap();
+    let page = read("report.html");
+    assert!(
+        !page.contains("<img") && !page.contains("</script") && !page.contains("<!--") && !page.contains("onerror=\"")
+    );
+    // The title twice, the names of fronts and cracks, the warning, and the stage are there as text.
+    assert!(page.matches("&lt;img src=x onerror=&quot;alert(1)&quot;&gt;").count() >= 8, "{page}");
+    assert_eq!(page.matches("</title>").count(), 1);
+    let results: Value = serde_json::from_str(&read("results.json")).unwrap();
+    assert_eq!((&results["case"], &results["fronts"][0]["crack"]), (&ATTACK.into(), &ATTACK.into()));
+    // Files for ParaView stay XML.
+    for name in ["cracks.pvd", "nodes.pvd"] {
+        assert!(!read(name).contains("<img"));
+    }
+}
+
+#[test]
 fn the_report_is_made_again_from_the_folder() {
     let (case, result) = solved();
     let dir = tempfile::tempdir().unwrap();

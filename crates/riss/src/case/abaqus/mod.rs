@@ -92,13 +92,23 @@ fn into_domain(model: &super::gmsh::GmshModel) -> Domain {
 /// # Errors
 /// What is wrong with the file.
 pub fn import_abaqus(path: &Path) -> Result<(String, Vec<String>), String> {
-    let bytes = super::read_bytes(path, super::MAX_MESH_BYTES).map_err(|problem| problem.message)?;
-    let mut model = read_abaqus(&bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+    read_abaqus_as_case(&super::read_bytes(path, super::MAX_MESH_BYTES).map_err(|problem| problem.message)?, path)
+}
+
+/// The same with the bytes of the file at hand.
+///
+/// # Errors
+/// What is wrong with them. No bytes make it panic.
+pub fn read_abaqus_as_case(bytes: &[u8], path: &Path) -> Result<(String, Vec<String>), String> {
+    let mut model = read_abaqus(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
     let mut text = String::new();
     if let Some(title) = model.tables.remove("title") {
         text += &format!("title = {title}\n");
     }
     let file = toml::Value::from(path.display().to_string());
+    if !super::files::is_below(path) {
+        text += "files = \"anywhere\"\n";
+    }
     text += "# Units are those of the input file; name them: units = \"mm, N, MPa\"\n";
     text +=
         &format!("\n# Parts: {}\n", model.domain.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "));

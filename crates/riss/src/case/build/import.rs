@@ -1,9 +1,9 @@
 //! What an input file of Abaqus or CalculiX adds to a case that does not say it itself.
 
-use crate::case::abaqus::{AbaqusModel, read_abaqus};
+use crate::case::abaqus::{AbaqusError, AbaqusModel, read_abaqus};
 use crate::case::document::{Content, Document};
+use crate::case::files::Files;
 use crate::case::problem::Problem;
-use std::path::Path;
 
 /// Key of the file.
 pub(super) const KEY: &str = "geometry.abaqus.file";
@@ -16,7 +16,7 @@ const GROUPS: [(&str, &[&str]); 2] = [
 /// The model of the file that the case names, if it names one; its tables are put into the document.
 pub(super) fn import(
     document: &mut Document,
-    folder: &Path,
+    files: &Files,
     problems: &mut Vec<Problem>,
 ) -> Option<Option<AbaqusModel>> {
     let is_wanted =
@@ -24,17 +24,17 @@ pub(super) fn import(
     let Some(Content::Text(file)) = document.find(KEY).map(|n| n.content.clone()).filter(|_| is_wanted) else {
         return Some(None);
     };
-    let read = crate::case::read_bytes(&folder.join(file), crate::case::MAX_MESH_BYTES).map_err(|p| p.message);
-    match read.and_then(|bytes| read_abaqus(&bytes).map_err(|e| e.to_string())) {
+    let unread = |e: AbaqusError| Box::new(Problem::new("", e.to_string()));
+    match files.bytes(&file).and_then(|bytes| read_abaqus(&bytes).map_err(unread)) {
         Ok(mut model) => {
             let left = add_tables(document, &mut model);
             model.remarks.extend(left);
             Some(Some(model))
         }
-        Err(message) => {
-            let mut problem = Problem::new(KEY, message);
+        Err(mut problem) => {
+            problem.key = KEY.into();
             document.locate(&mut problem);
-            problems.push(problem);
+            problems.push(*problem);
             None
         }
     }

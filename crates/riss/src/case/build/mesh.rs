@@ -2,22 +2,20 @@
 
 use super::boundary::{Boundary, Edge};
 use super::report::Report;
+use crate::case::files::Files;
 use crate::case::gmsh::read_gmsh;
 use crate::model::Domain;
-use std::path::Path;
 
 /// Key that all edges of a mesh come from.
 const KEY: &str = "geometry.gmsh.file";
 
-/// Adds the loops and parts of the mesh in `path`; `None` if it has problems.
-pub(super) fn add_mesh(boundary: &mut Boundary, path: &Path, report: &mut Report) -> Option<()> {
-    let domain = crate::case::read_bytes(path, crate::case::MAX_MESH_BYTES)
-        .map_err(|problem| problem.message)
-        .and_then(|bytes| read_gmsh(&bytes).and_then(|mesh| mesh.into_domain()).map_err(|e| e.to_string()));
-    let domain = match domain {
+/// Adds the loops and parts of the mesh in file `name`; `None` if it has problems.
+pub(super) fn add_mesh(boundary: &mut Boundary, name: &str, files: &Files, report: &mut Report) -> Option<()> {
+    let bytes = report.known(KEY, files.bytes(name))?;
+    let domain = match read_gmsh(&bytes).and_then(|mesh| mesh.into_domain()) {
         Ok(domain) => domain,
-        Err(message) => {
-            report.error(KEY, message);
+        Err(e) => {
+            report.error(KEY, e.to_string());
             return None;
         }
     };

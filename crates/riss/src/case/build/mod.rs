@@ -18,6 +18,7 @@ mod supports;
 
 use super::abaqus::AbaqusModel;
 use super::document::Document;
+use super::files::Files;
 use super::problem::Problem;
 use super::schema::{self, CaseFile, OutputSettings};
 use crate::analysis::{GrowthSettings, Settings};
@@ -45,8 +46,8 @@ pub(super) struct Built {
 pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
     let schema = super::plain_schema();
     let values = super::values::resolve(document, &schema, problems);
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let imported = import::import(document, folder, problems)?;
+    let files = Files::of(document, path);
+    let imported = import::import(document, &files, problems)?;
     let document = &*document;
     let mut faulty = super::check::check(document, &schema, problems);
     faulty.extend(values.faulty);
@@ -58,11 +59,11 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     method::complete(&mut file, &mut report);
     let material = material(&file.material, &mut report);
     let exact = file.exact.as_ref().and_then(|e| exact::exact(e, &mut report));
-    let mut settings = settings::settings(&file, folder, &mut report);
+    let mut settings = settings::settings(&file, &files, &mut report);
     if ["geometry", "hole", "part"].iter().any(|key| faulty.contains(*key)) {
         return None;
     }
-    let domain = domain(&file, imported.as_ref(), folder, &mut report)?;
+    let domain = domain(&file, imported.as_ref(), &files, &mut report)?;
     settings::check_layout(&mut settings, &file, &domain, &mut report);
     let cracks = cracks::cracks(&file.crack, &domain, &mut report);
     if let Some(contact) = &file.contact {
@@ -144,11 +145,11 @@ fn material(m: &schema::Material, report: &mut Report) -> Elasticity {
     Elasticity { young: m.young, poisson: m.poisson, plane: m.plane }
 }
 
-fn domain(file: &CaseFile, imported: Option<&AbaqusModel>, folder: &Path, report: &mut Report) -> Option<Domain> {
+fn domain(file: &CaseFile, imported: Option<&AbaqusModel>, files: &Files, report: &mut Report) -> Option<Domain> {
     let mut boundary = Boundary::default();
     let added = match imported {
         Some(model) => mesh::add_domain(&mut boundary, &model.domain, import::KEY, report),
-        None => outline::add_outline(&mut boundary, &file.geometry, folder, report),
+        None => outline::add_outline(&mut boundary, &file.geometry, files, report),
     };
     let mut sound = added.is_some();
     for (index, hole) in file.hole.iter().enumerate() {

@@ -2,10 +2,10 @@
 
 use super::boundary::{Boundary, Edge};
 use super::report::Report;
+use crate::case::files::Files;
 use crate::case::schema::{Disk, Geometry, Hole, Outline, OutlineEdge, Point, Polygon, Rectangle, Turn};
 use crate::geometry::curve::Curve;
 use crate::math::Vector2;
-use std::path::Path;
 
 /// The distances of an arc's ends from its center may differ by this fraction of the radius.
 const RADIUS_MISMATCH: f64 = 1e-6;
@@ -20,7 +20,7 @@ pub(super) fn vector(p: Point) -> Vector2 {
 pub(super) fn add_outline(
     boundary: &mut Boundary,
     geometry: &Geometry,
-    folder: &Path,
+    files: &Files,
     report: &mut Report,
 ) -> Option<()> {
     let edges = match geometry {
@@ -31,7 +31,7 @@ pub(super) fn add_outline(
             polygon(boundary, &p.corners, &names, "geometry.polygon.corners", report)?
         }
         Geometry::Outline(o) => outline(boundary, o, "geometry.outline", None, report)?,
-        Geometry::Gmsh(file) => return super::mesh::add_mesh(boundary, &folder.join(&file.file), report),
+        Geometry::Gmsh(file) => return super::mesh::add_mesh(boundary, &file.file, files, report),
         // The file was read with all that it says, and its body is added where that is at hand.
         Geometry::Abaqus(file) => {
             report.error("geometry.abaqus.file", format!("{} was not read", file.file));

@@ -29,6 +29,11 @@ impl<'a> Report<'a> {
         self.problems.last_mut().expect("pushed above")
     }
 
+    /// What is known, or else its problem with the value at `key`.
+    pub fn known<T>(&mut self, key: &str, found: Result<T, Box<Problem>>) -> Option<T> {
+        found.map_err(|bad| self.error(key, bad.message).suggestion = bad.suggestion).ok()
+    }
+
     /// Adds a note with the value at `key`.
     pub fn note(&mut self, key: impl Into<String>, message: impl Into<String>) {
         let mut problem = Problem::new(key, message);

@@ -5,6 +5,7 @@ use super::report::Report;
 use crate::adaptivity::AccuracySettings;
 use crate::analysis::Settings;
 use crate::approximation::settings::{ApproximationSettings, Basis, CrackSmoothing, HoleSmoothing, SupportShape};
+use crate::case::files::Files;
 use crate::case::schema::{self, CaseFile, NodeFile};
 use crate::integration::settings::{GradientCorrection, Scheme};
 use crate::model::Domain;
@@ -12,7 +13,6 @@ use crate::nodes::generation::MAX_NODES;
 use crate::nodes::settings::{Graded, Layout, Listed, NodeSettings, Star};
 use crate::system::ConstraintMethod;
 use std::collections::BTreeSet;
-use std::path::Path;
 
 /// Node positions this close to the boundary, times the size of the body, are left to the boundary's own nodes.
 const ON_BOUNDARY: f64 = 1e-6;
@@ -22,7 +22,7 @@ const MAX_STAR_NODES: usize = 10_000;
 const LEAST_SPACING: f64 = 1e-9;
 
 /// The settings as far as they can be told without the body.
-pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> Settings {
+pub(super) fn settings(file: &CaseFile, files: &Files, report: &mut Report) -> Settings {
     check_approximation(file, report);
     if let Scheme::Cells { size } = file.integration.scheme {
         report.positive("integration.scheme.cells.size", size);
@@ -50,7 +50,7 @@ pub(super) fn settings(file: &CaseFile, folder: &Path, report: &mut Report) -> S
     }
     Settings {
         method: file.method,
-        nodes: nodes(&file.nodes, folder, report),
+        nodes: nodes(&file.nodes, files, report),
         approximation: file.approximation,
         integration: file.integration,
         constraints: file.constraints,
@@ -135,7 +135,7 @@ fn check_ascending(radii: &[f64], key: &str, report: &mut Report) {
     }
 }
 
-fn nodes(nodes: &schema::Nodes, folder: &Path, report: &mut Report) -> NodeSettings {
+fn nodes(nodes: &schema::Nodes, files: &Files, report: &mut Report) -> NodeSettings {
     let layout = match &nodes.layout {
         schema::Layout::Graded(graded) => {
             for (name, value) in [("spacing", graded.spacing), ("tip_spacing", graded.tip_spacing)] {
@@ -152,7 +152,7 @@ fn nodes(nodes: &schema::Nodes, folder: &Path, report: &mut Report) -> NodeSetti
         }
         schema::Layout::Structured(grid) => Layout::Structured(grid.clone()),
         schema::Layout::Listed(listed) => Layout::Listed(listed.clone()),
-        schema::Layout::File(file) => Layout::Listed(Listed { positions: read_nodes(file, folder, report) }),
+        schema::Layout::File(file) => Layout::Listed(Listed { positions: read_nodes(file, files, report) }),
     };
     if let Some(Star { radii, .. }) = &nodes.star {
         check_ascending(radii, "nodes.star.radii", report);
@@ -161,15 +161,9 @@ fn nodes(nodes: &schema::Nodes, folder: &Path, report: &mut Report) -> NodeSetti
 }
 
 /// Positions from a file with `x,y` a line; `#` begins a comment, and a first line of names is passed over.
-fn read_nodes(file: &NodeFile, folder: &Path, report: &mut Report) -> Vec<[f64; 2]> {
+fn read_nodes(file: &NodeFile, files: &Files, report: &mut Report) -> Vec<[f64; 2]> {
     let key = "nodes.layout.file.path";
-    let text = match crate::case::read_text(&folder.join(&file.path), crate::case::MAX_MESH_BYTES) {
-        Ok(text) => text,
-        Err(problem) => {
-            report.error(key, problem.message);
-            return vec![];
-        }
-    };
+    let Some(text) = report.known(key, files.text(&file.path)) else { return vec![] };
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)

@@ -9,6 +9,7 @@ pub(in crate::case) use geometry::*;
 use crate::adaptivity::AccuracySettings;
 use crate::analysis::{GrowthSettings, Method};
 use crate::approximation::ApproximationSettings;
+use crate::case::files::FileAccess;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
 use crate::material::PlaneState;
@@ -33,6 +34,9 @@ pub(in crate::case) struct CaseFile {
     /// Units of length, force and stress, such as "mm, N, MPa"; then numbers may carry units of their own, "200 GPa".
     #[serde(default, rename = "units")]
     pub _units: Option<String>,
+    /// Where the files that the case names may lie.
+    #[serde(default, rename = "files")]
+    pub _files: FileAccess,
     /// Numbers with names, for expressions such as "2*a" wherever a number is due, and for sweeps.
     #[serde(default, rename = "parameters")]
     pub _parameters: BTreeMap<String, f64>,

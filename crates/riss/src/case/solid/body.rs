@@ -3,12 +3,12 @@
 use super::schema::{SolidBall, SolidBox, SolidCylinder, SolidFile, SolidGeometry, SolidMeshFile};
 use super::stl::read_stl;
 use crate::case::build::report::Report;
+use crate::case::files::Files;
 use crate::case::gmsh::read_gmsh_surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::surface::makers::{ball, cuboid, cylinder};
 use crate::geometry::surface::{Part, Shape, Surface, TriangleMesh};
 use crate::math::Vector3;
-use std::path::Path;
 
 /// The name that stands for all of the boundary.
 pub(super) const BOUNDARY: &str = "boundary";
@@ -18,7 +18,7 @@ const FEATURE_ANGLE: f64 = 30.0;
 const OFF_BOX: f64 = 1e-9;
 
 /// The surface of the body; `None` if it has problems.
-pub(super) fn body(file: &SolidFile, folder: &Path, report: &mut Report) -> Option<Surface> {
+pub(super) fn body(file: &SolidFile, files: &Files, report: &mut Report) -> Option<Surface> {
     let (mut mesh, key, angle) = match &file.geometry {
         SolidGeometry::Box(b) => (boxed(b, "geometry.box", report)?, "geometry.box", FEATURE_ANGLE),
         SolidGeometry::Cylinder(c) => {
@@ -27,11 +27,11 @@ pub(super) fn body(file: &SolidFile, folder: &Path, report: &mut Report) -> Opti
         }
         SolidGeometry::Ball(b) => (sphere(b, "geometry.ball", "surface", report)?, "geometry.ball", FEATURE_ANGLE),
         SolidGeometry::Stl(f) => {
-            (from_file(f, folder, "geometry.stl.file", read_stl, report)?, "geometry.stl.file", angle(f))
+            (from_file(f, files, "geometry.stl.file", read_stl, report)?, "geometry.stl.file", angle(f))
         }
         SolidGeometry::Gmsh(f) => {
             let read = |bytes: &[u8]| read_gmsh_surface(bytes).map_err(|e| e.to_string());
-            (from_file(f, folder, "geometry.gmsh.file", read, report)?, "geometry.gmsh.file", angle(f))
+            (from_file(f, files, "geometry.gmsh.file", read, report)?, "geometry.gmsh.file", angle(f))
         }
     };
     for (index, void) in file.void.iter().enumerate() {
@@ -84,19 +84,13 @@ fn sphere(b: &SolidBall, key: &str, name: &str, report: &mut Report) -> Option<T
 
 fn from_file(
     file: &SolidMeshFile,
-    folder: &Path,
+    files: &Files,
     key: &str,
     read: impl Fn(&[u8]) -> Result<TriangleMesh, String>,
     report: &mut Report,
 ) -> Option<TriangleMesh> {
-    let bytes = crate::case::read_bytes(&folder.join(&file.file), crate::case::MAX_MESH_BYTES);
-    match bytes.map_err(|problem| problem.message).and_then(|bytes| read(&bytes)) {
-        Ok(mesh) => Some(mesh),
-        Err(message) => {
-            report.error(key, message);
-            None
-        }
-    }
+    let bytes = report.known(key, files.bytes(&file.file))?;
+    read(&bytes).map_err(|message| report.error(key, message).key.clone()).ok()
 }
 
 /// The surface of a void, in one part.

@@ -3,11 +3,11 @@
 use super::schema::{SolidCrack, SolidFile};
 use super::stl::read_stl;
 use crate::case::build::report::Report;
+use crate::case::files::Files;
 use crate::crack::{CrackShape, CrackSurface};
 use crate::geometry::surface::Surface;
 use crate::math::Vector3;
 use crate::model::VectorField;
-use std::path::Path;
 
 /// All cracks of a case.
 #[derive(Default)]
@@ -19,7 +19,7 @@ pub(super) struct Cracks {
     pub acts: bool,
 }
 
-pub(super) fn cracks(file: &SolidFile, body: &Surface, folder: &Path, report: &mut Report) -> Cracks {
+pub(super) fn cracks(file: &SolidFile, body: &Surface, files: &Files, report: &mut Report) -> Cracks {
     let mut cracks = Cracks::default();
     for (index, crack) in file.crack.iter().enumerate() {
         let key = format!("crack[{index}]");
@@ -27,7 +27,7 @@ pub(super) fn cracks(file: &SolidFile, body: &Surface, folder: &Path, report: &m
         if cracks.names.contains(&name) {
             report.error(format!("{key}.name"), format!("there is already a crack named `{name}`"));
         }
-        let Some((kind, shape)) = shape(crack, &key, folder, report) else { continue };
+        let Some((kind, shape)) = shape(crack, &key, files, report) else { continue };
         let surface = match CrackSurface::new(&shape, body) {
             Ok(surface) => surface,
             Err(defect) => {
@@ -61,7 +61,7 @@ fn meet(a: &CrackSurface, b: &CrackSurface) -> bool {
 }
 
 /// The shape with its key.
-fn shape(crack: &SolidCrack, key: &str, folder: &Path, report: &mut Report) -> Option<(&'static str, CrackShape)> {
+fn shape(crack: &SolidCrack, key: &str, files: &Files, report: &mut Report) -> Option<(&'static str, CrackShape)> {
     match (&crack.disc, &crack.ellipse, &crack.polygon, &crack.stl) {
         (Some(disc), None, None, None) => {
             let normal = unit(disc.normal, &format!("{key}.disc.normal"), report);
@@ -87,11 +87,11 @@ fn shape(crack: &SolidCrack, key: &str, folder: &Path, report: &mut Report) -> O
             None
         }
         (None, None, None, Some(file)) => {
-            let bytes = crate::case::read_bytes(&folder.join(file), crate::case::MAX_MESH_BYTES);
-            match bytes.map_err(|problem| problem.message).and_then(|bytes| read_stl(&bytes)) {
+            let key = format!("{key}.stl");
+            match read_stl(&report.known(&key, files.bytes(file))?) {
                 Ok(mesh) => Some(("stl", CrackShape::Triangles(mesh))),
                 Err(message) => {
-                    report.error(format!("{key}.stl"), message);
+                    report.error(key, message);
                     None
                 }
             }

@@ -13,6 +13,7 @@ mod tests;
 
 use super::build::report::Report;
 use super::document::{Content, Document};
+use super::files::Files;
 use super::problem::{self, CaseErrors, Problem};
 use super::{Case, MAX_BYTES, read_text};
 use crate::analysis::SolidSettings;
@@ -21,6 +22,7 @@ use crate::model::{RigidMotion, Solid, SolidModel};
 use crate::system::collocation::LARGEST_POISSON;
 use schema::SolidFile;
 use std::path::{Path, PathBuf};
+pub use stl::read_stl;
 
 /// A case of any method.
 #[derive(Clone, Debug)]
@@ -99,6 +101,14 @@ impl SolidCase {
     pub fn place(&self, note: &Problem) -> String {
         problem::place(&self.path, &self.overrides, note)
     }
+
+    /// Where a key stands; see [`Case::place_of`].
+    pub fn place_of(&self, key: &str) -> String {
+        let document = Document::parse(&self.text, &self.overrides, &mut vec![]);
+        let mut problem = Problem::new(key, "");
+        document.locate(&mut problem);
+        self.place(&problem)
+    }
 }
 
 /// The JSON Schema of the case file of a solid.
@@ -113,14 +123,14 @@ fn build(
 ) -> Option<(SolidModel, SolidSettings, Vec<Problem>)> {
     let faulty = super::check::check(document, &solid_json_schema(), problems);
     let file: SolidFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let files = Files::of(document, path);
     let mut report = Report::new(document, problems);
     let material = material(&file, &mut report);
     if ["geometry", "void", "part"].iter().any(|key| faulty.contains(*key)) {
         return None;
     }
-    let body = body::body(&file, folder, &mut report)?;
-    let cracks = cracks::cracks(&file, &body, folder, &mut report);
+    let body = body::body(&file, &files, &mut report)?;
+    let cracks = cracks::cracks(&file, &body, &files, &mut report);
     let conditions = conditions::conditions(&file, &body, &material, &mut report);
     let settings = nodes::settings(&file, &body, &cracks.surfaces, &mut report);
     if report.problems.is_empty() && !conditions.acts && !cracks.acts {
@@ -142,7 +152,14 @@ fn build(
         rigid_motion,
     };
     let title = file.title.clone().unwrap_or_else(|| super::build::default_title(path));
-    let model = SolidModel { title, body, crack_names: cracks.names, cracks: cracks.surfaces, solid };
+    let model = SolidModel {
+        title,
+        body,
+        crack_names: cracks.names,
+        cracks: cracks.surfaces,
+        yield_stress: file.material.yield_stress,
+        solid,
+    };
     Some((model, settings?, report.notes))
 }
 
@@ -153,6 +170,9 @@ const PLACEHOLDERS: [(&str, &str); 2] =
 fn material(file: &SolidFile, report: &mut Report) -> Elasticity {
     let m = &file.material;
     report.positive("material.young", m.young);
+    if let Some(yield_stress) = m.yield_stress {
+        report.positive("material.yield_stress", yield_stress);
+    }
     if !(m.poisson > -1.0 && m.poisson <= LARGEST_POISSON) {
         report.error("material.poisson", "out of range").allow(format!("above -1 and up to {LARGEST_POISSON}"));
     }

@@ -1,5 +1,6 @@
 //! What the case file of a solid may say. Shape only: ranges and sense are checked in the files beside.
 
+use crate::case::files::FileAccess;
 use crate::case::schema::{Names, RigidMotion, Scalar};
 use crate::nodes::solid::NodesOnFronts;
 use crate::system::CollocationSettings;
@@ -17,6 +18,9 @@ pub(in crate::case) struct SolidFile {
     /// Title in the results.
     #[serde(default)]
     pub title: Option<String>,
+    /// Where the files that the case names may lie.
+    #[serde(default, rename = "files")]
+    pub _files: FileAccess,
     /// Numerical method.
     #[serde(rename = "method")]
     pub _method: SolidMethod,
@@ -83,6 +87,9 @@ pub(in crate::case) struct SolidMaterial {
     pub young: f64,
     /// Poisson's ratio, above -1 and up to 0.45.
     pub poisson: f64,
+    /// Yield stress [stress]: with it, plastic zones that are too large for linear elasticity are told.
+    #[serde(default)]
+    pub yield_stress: Option<f64>,
 }
 
 /// The body, one of these.

@@ -4,7 +4,10 @@ use crate::geometry::surface::{Shape, TriangleMesh};
 use crate::math::Vector3;
 
 /// Reads the bytes of an STL file as one part named `surface`.
-pub(super) fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, String> {
+///
+/// # Errors
+/// What is wrong with them. No bytes make it panic.
+pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, String> {
     let mut reader = std::io::Cursor::new(bytes);
     let triangles = stl_io::create_stl_reader(&mut reader).map_err(|e| format!("not an STL file: {e}"))?;
     let mut mesh = TriangleMesh::default();

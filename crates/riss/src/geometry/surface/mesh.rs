@@ -10,6 +10,8 @@ use rustc_hash::FxHashMap;
 const WELD: f64 = 1e-9;
 /// A triangle lower than this share of its longest edge is left out.
 const FLAT: f64 = 1e-12;
+/// Sizes and distances from the origin that leave room for products of four lengths.
+const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 
 /// Triangles with the parts they belong to.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +47,12 @@ pub enum SurfaceDefect {
     NotFinite {
         /// Its index.
         vertex: usize,
+    },
+    /// Lengths whose products are no numbers.
+    #[error("a surface of size {size} cannot be worked with; choose a unit in which it is near 1")]
+    Size {
+        /// Its size, or its distance from the origin if that is too large [length].
+        size: f64,
     },
     /// A boundary with a rim.
     #[error("the surface is not closed: at ({}, {}, {}) it has a free edge", at.x, at.y, at.z)]
@@ -89,7 +97,14 @@ impl TriangleMesh {
         if let Some(vertex) = self.vertices.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(SurfaceDefect::NotFinite { vertex });
         }
-        let size = Aabb::of_points(self.vertices.iter().copied()).size().norm();
+        let far = self.vertices.iter().map(|p| p.amax()).fold(0.0, f64::max);
+        let size = Aabb::of_points(self.vertices.iter().copied()).size().amax();
+        for length in [far, size] {
+            if !self.vertices.is_empty() && !SIZES.contains(&length) && length != 0.0 {
+                return Err(SurfaceDefect::Size { size: length });
+            }
+        }
+        let size = size * 3f64.sqrt();
         let (vertices, index) = weld(&self.vertices, WELD * size);
         let (mut triangles, mut part_of) = (vec![], vec![]);
         for (t, part) in self.triangles.iter().zip(&self.part_of) {
