@@ -125,12 +125,17 @@ impl<'a> Writer<'a> {
             let inner = &variant["properties"][key];
             let (content, content_name) = self.resolve(inner);
             match content_name {
-                Some(name) => write!(page, ": see {}", self.link(name)).expect("a string takes all"),
-                None if content["properties"].is_object() => {
+                Some(name) if self.needs_section(content) => {
+                    write!(page, ": see {}", self.link(name)).expect("a string takes all");
+                }
+                Some(_) if !self.allowed(inner).is_empty() => {
+                    write!(page, ": {}", self.allowed(inner)).expect("a string takes all");
+                }
+                _ if content["properties"].is_object() => {
                     page.push_str(", with the keys\n");
                     self.table(page, content);
                 }
-                None => write!(page, " (`{}`)", self.kind(inner)).expect("a string takes all"),
+                _ => write!(page, " (`{}`)", self.kind(inner)).expect("a string takes all"),
             }
         } else if let Some(name) = name {
             write!(page, "\n- {}", with_text(&self.link(name), &text)).expect("a string takes all");
