@@ -9,10 +9,10 @@ use crate::run::RunArguments;
 use crate::sweep::{MOST_RUNS, combinations};
 use crate::table::{aligned, number};
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt};
-use riss::analysis::{RunSize, linear_static};
-use riss::case::Case;
-use riss::output::run_table::{RowStatus, RunRow, end_name, keys, table_csv, tips};
-use riss::output::{read_results, write_file};
+use riss::analysis::{RunSize, linear_static, solid_static};
+use riss::case::{AnyCase, Case, SolidCase};
+use riss::output::run_table::{RowStatus, RunRow, end_name, fronts, keys, table_csv, tips};
+use riss::output::{Results, RunInfo, RunStatus, SolidResults, read_results, write_file, write_solid_results};
 use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ const TABLE_FILE: &str = "table.csv";
 
 /// One run that is to be done.
 struct Job {
-    case: Case,
+    case: AnyCase,
     name: String,
     set: Vec<(String, String)>,
     folder: PathBuf,
@@ -85,14 +85,19 @@ fn jobs(arguments: &RunArguments, folder: &Path) -> Result<Vec<Job>, u8> {
         for set in &sets {
             let values = set.iter().map(|(key, value)| format!("{key}={value}"));
             let overrides: Vec<String> = arguments.overrides.iter().cloned().chain(values).collect();
-            match Case::read(path, &overrides) {
+            match AnyCase::read(path, &overrides) {
                 Ok(case) => {
-                    let size = RunSize::of_plane(&case.model, &case.settings, case.growth.as_ref());
+                    let size = match &case {
+                        AnyCase::Plane(case) => RunSize::of_plane(&case.model, &case.settings, case.growth.as_ref()),
+                        AnyCase::Solid(case) => RunSize::of_solid(&case.model, &case.settings),
+                    };
                     if let Some(reason) = arguments.memory_limit.refusal(&size) {
                         return Err(refuse(&format!("{}: {reason}", path.display())));
                     }
-                    if !arguments.quiet && set == &sets[0] {
-                        diagnostics::report_notes(&case);
+                    match &case {
+                        _ if arguments.quiet || set != &sets[0] => {}
+                        AnyCase::Plane(case) => diagnostics::report_notes(case),
+                        AnyCase::Solid(case) => diagnostics::report_solid_notes(case),
                     }
                     let below = if arguments.cases.len() == 1 { folder.to_path_buf() } else { folder.join(&name) };
                     let own = if set.is_empty() { below } else { below.join(unique(folder_name(set), &mut folders)) };
@@ -168,27 +173,52 @@ fn run_all(jobs: &[Job], folder: &Path, is_quiet: bool) -> io::Result<Vec<RunRow
 
 fn run_one(job: &Job) -> RunRow {
     let folder = job.folder.display().to_string();
-    let outcome = match &job.case.growth {
-        None => run_static(job),
-        Some(growth) => resume::begin(&job.case, &job.folder).map_err(Obstacle::message).and_then(|beginning| {
-            grow::follow(&job.case, growth, beginning, &job.folder, Progress::new(true), Speech::Nothing).map(drop)
-        }),
+    let row = match &job.case {
+        AnyCase::Plane(case) => run_plane(case, &job.folder).map(|r| RunRow::new(&job.name, &job.set, &folder, &r)),
+        AnyCase::Solid(case) => {
+            run_solid(case, &job.folder).map(|r| RunRow::of_solid(&job.name, &job.set, &folder, &r))
+        }
     };
-    let read = || read_results(&job.folder).map_err(|e| format!("the results cannot be read: {e}"));
-    match outcome.and_then(|()| read()) {
-        Ok(results) => RunRow::new(&job.name, &job.set, &folder, &results),
-        Err(reason) => RunRow::failed(&job.name, &job.set, &folder, &reason),
-    }
+    row.unwrap_or_else(|reason| RunRow::failed(&job.name, &job.set, &folder, &reason))
 }
 
-fn run_static(job: &Job) -> Result<(), String> {
+fn run_plane(case: &Case, folder: &Path) -> Result<Results, String> {
+    match &case.growth {
+        None => run_static(case, folder)?,
+        Some(growth) => {
+            let beginning = resume::begin(case, folder).map_err(Obstacle::message)?;
+            grow::follow(case, growth, beginning, folder, Progress::new(true), Speech::Nothing)?;
+        }
+    }
+    read_results(folder).map_err(|e| format!("the results cannot be read: {e}"))
+}
+
+fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
     let mut progress = Progress::new(true);
-    let outcome = linear_static(&job.case.model, &job.case.settings, &mut progress);
+    let outcome = solid_static(&case.model, &case.settings, &mut progress);
+    let wall_time_s = progress.finish();
+    let result = outcome.map_err(|e| e.to_string())?;
+    let info = RunInfo {
+        title: case.model.title.clone(),
+        method: "collocation".into(),
+        units: None,
+        status: RunStatus::Done,
+        wall_time_s,
+        stage_time_s: std::mem::take(&mut progress.stage_time_s),
+        peak_memory_bytes: peak_memory_bytes(),
+    };
+    write_solid_results(folder, &case.model, &info, &result).map_err(|e| results::reason(&e))?;
+    Ok(SolidResults::new(&case.model, &info, &result, vec![]))
+}
+
+fn run_static(case: &Case, folder: &Path) -> Result<(), String> {
+    let mut progress = Progress::new(true);
+    let outcome = linear_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();
     let result = outcome.map_err(|e| e.to_string())?;
     let stage_time_s = std::mem::take(&mut progress.stage_time_s);
     let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
-    results::write(&job.folder, &job.case, &run, &result).map(drop).map_err(|e| results::reason(&e))
+    results::write(folder, case, &run, &result).map(drop).map_err(|e| results::reason(&e))
 }
 
 /// A run in one line.
@@ -203,7 +233,7 @@ fn line(row: &RunRow) -> String {
 
 /// The table on the terminal: what differs between the runs, and K of every tip.
 fn describe(rows: &[RunRow]) -> String {
-    let (keys, tips) = (keys(rows), tips(rows));
+    let (keys, tips, fronts) = (keys(rows), tips(rows), fronts(rows));
     let has_cycles = rows.iter().any(|r| r.cycles.is_some());
     let many_cases = rows.iter().any(|r| r.case != rows[0].case);
     let mut head: Vec<String> = vec![];
@@ -217,6 +247,10 @@ fn describe(rows: &[RunRow]) -> String {
         let of = if tips.len() == 1 { String::new() } else { format!(" {crack} {}", end_name(*end)) };
         head.extend([format!("K_I{of}"), format!("K_II{of}")]);
     }
+    for name in &fronts {
+        let of = if fronts.len() == 1 { String::new() } else { format!(" {name}") };
+        head.extend([format!("K_I min{of}"), format!("K_I max{of}")]);
+    }
     if has_cycles {
         head.push("cycles".into());
     }
@@ -229,6 +263,10 @@ fn describe(rows: &[RunRow]) -> String {
         for (crack, end) in &tips {
             let tip = row.tip(crack, *end);
             cells.extend([tip.and_then(|t| t.k1), tip.and_then(|t| t.k2)].map(known));
+        }
+        for name in &fronts {
+            let front = row.front(name);
+            cells.extend([front.and_then(|f| f.k1_min), front.and_then(|f| f.k1_max)].map(known));
         }
         if has_cycles {
             cells.push(known(row.cycles));

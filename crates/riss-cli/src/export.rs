@@ -3,14 +3,15 @@
 use crate::{BAD_CASE, DONE, STOPPED, results};
 use clap::{Args, ValueEnum};
 use riss::crack::End;
-use riss::output::exports::{BetaReference, CrackFormat, beta_table, cracks_as, tips};
+use riss::output::exports::{BetaReference, CrackFormat, afgrow_table, beta_table, cracks_as, tips};
 use riss::output::{Results, read_results, write_file};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `riss export`.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  riss export plate.riss-out --format stl --thickness 2\n  \
-    riss export plate.riss-out --format easigrow --stress 100 --distance 50")]
+    riss export plate.riss-out --format easigrow --stress 100 --distance 50\n  \
+    riss export plate.riss-out --format afgrow --stress 100")]
 pub struct ExportArguments {
     /// Folder of results
     pub dir: PathBuf,
@@ -23,8 +24,8 @@ pub struct ExportArguments {
     /// Thickness of the sheet, for stl
     #[arg(long, value_name = "T", default_value_t = 1.0, value_parser = positive)]
     pub thickness: f64,
-    /// Stress that beta factors refer to, for easigrow
-    #[arg(long, value_name = "S", required_if_eq("format", "easigrow"), value_parser = positive)]
+    /// Stress that beta factors refer to, for easigrow and afgrow
+    #[arg(long, value_name = "S", required_if_eq_any([("format", "easigrow"), ("format", "afgrow")]), value_parser = positive)]
     pub stress: Option<f64>,
     /// Distance from where the crack began to the free edge ahead, for easigrow
     #[arg(long, value_name = "D", required_if_eq("format", "easigrow"), value_parser = positive)]
@@ -45,6 +46,8 @@ pub enum Format {
     Stl,
     /// beta_CRACK_END.txt for each tip: beta factors over crack length, for easigrow --beta file-1d:FILE
     Easigrow,
+    /// beta_CRACK_END.tsv for each tip: crack length and beta factor, to paste into AFGROW's user-defined betas
+    Afgrow,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -87,7 +90,8 @@ fn contents(arguments: &ExportArguments, results: &Results) -> Result<Vec<(Strin
         Format::Csv => ("cracks.csv", CrackFormat::Csv),
         Format::Vtp => ("cracks.vtp", CrackFormat::Vtp),
         Format::Stl => ("cracks.stl", CrackFormat::Stl { thickness: arguments.thickness }),
-        Format::Easigrow => return beta_files(arguments, results),
+        Format::Easigrow => return easigrow_files(arguments, results),
+        Format::Afgrow => return afgrow_files(arguments, results),
     };
     let step = match arguments.step {
         Some(step) => results.steps.iter().find(|s| s.step == step),
@@ -101,20 +105,37 @@ fn contents(arguments: &ExportArguments, results: &Results) -> Result<Vec<(Strin
     Ok(vec![(format.0.into(), content)])
 }
 
-fn beta_files(arguments: &ExportArguments, results: &Results) -> Result<Vec<(String, Vec<u8>)>, String> {
+fn easigrow_files(arguments: &ExportArguments, results: &Results) -> Result<Vec<(String, Vec<u8>)>, String> {
     let (Some(stress), Some(distance)) = (arguments.stress, arguments.distance) else {
         return Err("beta factors need --stress and --distance".into());
     };
     let reference = BetaReference { stress, distance };
+    files_of_tips(arguments, results, "txt", |crack, end| beta_table(results, crack, end, &reference))
+}
+
+fn afgrow_files(arguments: &ExportArguments, results: &Results) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let Some(stress) = arguments.stress else {
+        return Err("beta factors need --stress".into());
+    };
+    files_of_tips(arguments, results, "tsv", |crack, end| afgrow_table(results, crack, end, stress))
+}
+
+/// A file for each tip that has a table.
+fn files_of_tips(
+    arguments: &ExportArguments,
+    results: &Results,
+    extension: &str,
+    table: impl Fn(&str, End) -> Option<String>,
+) -> Result<Vec<(String, Vec<u8>)>, String> {
     let mut files: Vec<(String, Vec<u8>)> = vec![];
     for (crack, end) in tips(results) {
-        let Some(table) = beta_table(results, &crack, end, &reference) else { continue };
+        let Some(table) = table(&crack, end) else { continue };
         let plain: String = crack.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
         let end = if end == End::Start { "start" } else { "end" };
-        let name = format!("beta_{plain}_{end}.txt");
+        let name = format!("beta_{plain}_{end}.{extension}");
         // Names of cracks may differ in signs that names of files do not have.
         let again = files.iter().filter(|f| f.0 == name).count();
-        let name = if again == 0 { name } else { format!("beta_{plain}_{end}_{}.txt", files.len()) };
+        let name = if again == 0 { name } else { format!("beta_{plain}_{end}_{}.{extension}", files.len()) };
         files.push((name, table.into_bytes()));
     }
     if files.is_empty() {

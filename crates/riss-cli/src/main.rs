@@ -80,8 +80,9 @@ enum Command {
     /// Draws the weight and the shape function of a node
     Shape(shape::ShapeArguments),
     /// Prints the JSON Schema of the case file
-    #[command(after_help = "Example: riss schema > riss.schema.json")]
-    Schema,
+    #[command(after_help = "Examples:\n  riss schema > riss.schema.json\n  \
+        riss schema --method collocation > riss-solid.schema.json")]
+    Schema(schema::SchemaArguments),
     /// Writes a commented case to start from
     #[command(after_help = "Examples:\n  riss new\n  riss new plate.toml")]
     New {
@@ -111,7 +112,7 @@ fn main() -> ExitCode {
         Command::Report(arguments) => report::write(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Shape(arguments) => shape::shape(&arguments),
-        Command::Schema => schema::print(),
+        Command::Schema(arguments) => schema::print(&arguments),
         Command::New { file } => new::write(&file),
         Command::Import(arguments) => import::import(&arguments),
         Command::Cases(arguments) => cases::cases(&arguments),

@@ -137,3 +137,32 @@ fn mistakes_are_found_before_anything_runs() {
     check_refused(&folder, &["run", "strip.toml", "strip.toml", "--open"], "--open");
     check_refused(&folder, &["run", "strip.toml", "missing.toml"], "there is no such file");
 }
+
+const PENNY: &str = "method = 'collocation'
+rigid_motion = 'mean-is-zero'
+material = { young = 1000, poisson = 0.3 }
+geometry.box = { lower = [-6, -6, -6], upper = [6, 6, 6] }
+crack = [{ name = 'penny', disc = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 } }]
+remote_stress.zz = 1
+nodes = { spacing = 1.5, front_spacing = 0.12, growth = 0.3 }
+";
+
+#[test]
+fn a_sweep_of_a_solid_has_its_fronts_in_the_table() {
+    let folder = scratch("solid");
+    std::fs::write(folder.join("penny.toml"), PENNY).expect("a file");
+    let text = stdout(&folder, &["run", "penny.toml", "--quiet", "--sweep", "crack.penny.disc.radius=1,1.2"]);
+    assert!(text.contains("K_I min") && text.contains("K_I max"), "{text}");
+    let table = read(folder.join("penny.riss-sweep/table.csv"));
+    let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|h| *h == name).expect("a column");
+    for (row, radius) in rows[1..].iter().zip([1.0_f64, 1.2]) {
+        // Sneddon 1946: 2 σ √(a/π) in an infinite body; the nodes are coarse.
+        let exact = 2.0 * (radius / std::f64::consts::PI).sqrt();
+        for name in ["penny.K_I_min", "penny.K_I_max"] {
+            let k: f64 = row[column(name)].parse().expect("a number");
+            assert!((k / exact - 1.0).abs() < 0.04, "{table}");
+        }
+    }
+    assert_eq!(rows.len(), 3);
+}

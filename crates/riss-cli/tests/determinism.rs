@@ -30,7 +30,9 @@ crack = [{ polygon = [[-1, -1, 2], [1.5, -1, 2], [1.5, 3, 2], [-1, 3, 2]] }]
 fn results(folder: &Path, out: &str, threads: &str, settings: &[&str]) -> Value {
     let mut riss = Command::new(env!("CARGO_BIN_EXE_riss"));
     riss.args(["run", "case.toml", "-q", "--out", out, "--threads", threads]).current_dir(folder);
-    settings.iter().for_each(|s| drop(riss.args(["--set", s])));
+    for setting in settings {
+        riss.args(["--set", setting]);
+    }
     let run = riss.output().expect("riss runs");
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let text = std::fs::read_to_string(folder.join(out).join("results.json")).expect("results are written");

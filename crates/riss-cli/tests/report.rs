@@ -135,6 +135,9 @@ fn cracks_and_beta_factors_go_to_other_programs() {
     let beta: f64 = beta.parse().expect("a number");
     assert!((beta - 1.501).abs() < 0.015, "{table}");
     check_refused(&folder, &["export", "out", "--format", "easigrow"], "--stress");
+    stdout(&folder, &["export", "out", "--format", "afgrow", "--stress", "10"]);
+    assert!(read(folder.join("out/beta_crack-1_end.tsv")).starts_with(&format!("1\t{beta}\n")));
+    check_refused(&folder, &["export", "out", "--format", "afgrow"], "--stress");
     check_refused(&folder, &["export", "out", "--format", "stl", "--thickness", "0"], "above 0");
     check_refused(&folder, &["export", "out", "--format", "csv", "--step", "9"], "step 9 is not in out");
     check_refused(&folder, &["export", ".", "--format", "csv"], "cannot be read");

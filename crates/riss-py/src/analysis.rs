@@ -2,16 +2,20 @@
 
 use crate::case::Case;
 use crate::error;
+use crate::solid::{Solid, SolidCase};
 use crate::step::{State, Step};
 use pyo3::prelude::*;
-use riss::analysis::{GrowthEndKind, GrowthState, Observer, Stage, StaticResult, Warning, crack_growth, linear_static};
+use riss::analysis::{
+    GrowthEndKind, GrowthState, Observer, Stage, StaticResult, Warning, crack_growth, linear_static, solid_static,
+};
 use riss::output::results::StepResults;
-use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter};
+use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter, SolidResults, write_solid_results};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// How often Ctrl-C is looked for.
@@ -30,6 +34,7 @@ enum Failure {
     Analysis(riss::error::Error),
     Files(PathBuf, std::io::Error),
     Threads(String),
+    Stopped,
 }
 
 /// Runs a case to its end; steps go to `on_step`, which returns whether to go on.
@@ -53,6 +58,39 @@ pub fn run(
     let job = Job { case: case.case.clone(), start: start.map(|s| s.state.clone()), out, threads };
     let stopped = stop.clone();
     let worker = std::thread::spawn(move || job.run(send, stopped));
+    let answer_step = |step: Step| on_step.call1((step,)).and_then(|goes_on| goes_on.is_truthy());
+    listen(py, receive, &stop, worker, [&on_stage, &on_warning], answer_step)
+}
+
+/// Solves a solid, and writes its files if `out` is given.
+///
+/// After Ctrl-C nothing is written, and the run ends with the solution at hand; a second one does not wait for that.
+#[pyfunction]
+#[pyo3(signature = (case, out, threads, on_stage, on_warning))]
+pub fn run_solid(
+    py: Python<'_>,
+    case: &SolidCase,
+    out: Option<PathBuf>,
+    threads: Option<usize>,
+    on_stage: Bound<'_, PyAny>,
+    on_warning: Bound<'_, PyAny>,
+) -> PyResult<Solid> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let (send, receive) = channel();
+    let (case, stopped) = (case.case.clone(), stop.clone());
+    let worker = std::thread::spawn(move || in_pool(threads, || solve_solid(&case, out, send, &stopped)));
+    listen(py, receive, &stop, worker, [&on_stage, &on_warning], |_| Ok(true))
+}
+
+/// Passes on what a run says until it ends.
+fn listen<T: Send>(
+    py: Python<'_>,
+    receive: Receiver<Event>,
+    stop: &AtomicBool,
+    worker: JoinHandle<Result<T, Failure>>,
+    [on_stage, on_warning]: [&Bound<'_, PyAny>; 2],
+    on_step: impl Fn(Step) -> PyResult<bool>,
+) -> PyResult<T> {
     let receive = Mutex::new(receive);
     let mut failure: Option<PyErr> = None;
     loop {
@@ -62,7 +100,7 @@ pub fn run(
             Ok(Event::Stage(name)) => on_stage.call1((name,)).map(drop),
             Ok(Event::Warning(message)) => on_warning.call1((message,)).map(drop),
             Ok(Event::Step(step, answer)) => {
-                let goes_on = on_step.call1((*step,)).and_then(|goes_on| goes_on.is_truthy());
+                let goes_on = on_step(*step);
                 // A run that has ended does not wait for an answer.
                 let _ = answer.send(failure.is_none() && *goes_on.as_ref().unwrap_or(&false));
                 goes_on.map(drop)
@@ -79,10 +117,11 @@ pub fn run(
     let outcome = py.detach(|| worker.join());
     match (failure, outcome) {
         (Some(e), _) => Err(e),
-        (None, Ok(Ok(()))) => Ok(()),
+        (None, Ok(Ok(found))) => Ok(found),
         (None, Ok(Err(Failure::Analysis(e)))) => Err(error::of_analysis(&e)),
         (None, Ok(Err(Failure::Files(path, e)))) => Err(error::of_files(&path, &e)),
         (None, Ok(Err(Failure::Threads(e)))) => Err(error::AnalysisError::new_err(e)),
+        (None, Ok(Err(Failure::Stopped))) => Err(error::AnalysisError::new_err("the run was stopped")),
         (None, Err(_)) => {
             Err(error::AnalysisError::new_err("this is a bug in riss, not in your case; please report it"))
         }
@@ -102,12 +141,7 @@ struct Job {
 
 impl Job {
     fn run(self, send: Sender<Event>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
-        let pool = self.threads.map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build()).transpose();
-        let pool = pool.map_err(|e| Failure::Threads(format!("cannot start the threads: {e}")))?;
-        match pool {
-            Some(pool) => pool.install(|| self.run_here(send, stop)),
-            None => self.run_here(send, stop),
-        }
+        in_pool(self.threads, || self.run_here(send, stop))
     }
 
     fn run_here(self, send: Sender<Event>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
@@ -127,8 +161,7 @@ impl Job {
                 Some(writer)
             }
         };
-        let clock = Clock { start: Instant::now(), current: None, stages: vec![], n_taken: 0 };
-        let mut listener = Listener { case: &case, send, stop, writer, clock, problem: None };
+        let mut listener = Listener { case: &case, send, stop, writer, clock: Clock::new(), problem: None };
         let outcome = match &case.growth {
             None => linear_static(&case.model, &case.settings, &mut listener).map(drop),
             Some(growth) => crack_growth(&case.model, &case.settings, growth, start, &mut listener).map(drop),
@@ -137,6 +170,64 @@ impl Job {
             (Some(e), _) => Err(Failure::Files(out.unwrap_or_default(), e)),
             (None, outcome) => outcome.map_err(Failure::Analysis),
         }
+    }
+}
+
+/// Does a task with a number of threads, or with all there are.
+fn in_pool<T: Send>(n_threads: Option<usize>, task: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {
+    let pool = n_threads.map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build()).transpose();
+    match pool.map_err(|e| Failure::Threads(format!("cannot start the threads: {e}")))? {
+        Some(pool) => pool.install(task),
+        None => task(),
+    }
+}
+
+fn solve_solid(
+    case: &riss::case::SolidCase,
+    out: Option<PathBuf>,
+    send: Sender<Event>,
+    stop: &AtomicBool,
+) -> Result<Solid, Failure> {
+    let mut listener = SolidListener { send, clock: Clock::new() };
+    let result = solid_static(&case.model, &case.settings, &mut listener).map_err(Failure::Analysis)?;
+    listener.clock.begin(None);
+    if stop.load(Ordering::Relaxed) {
+        return Err(Failure::Stopped);
+    }
+    let info = RunInfo {
+        title: case.model.title.clone(),
+        method: "collocation".into(),
+        units: None,
+        status: RunStatus::Done,
+        wall_time_s: listener.clock.start.elapsed().as_secs_f64(),
+        stage_time_s: listener.clock.stages,
+        peak_memory_bytes: None,
+    };
+    let mut files = vec![];
+    if let Some(dir) = out {
+        let written = write_solid_results(&dir, &case.model, &info, &result);
+        let paths = written.map_err(|e| Failure::Files(dir, e))?;
+        files = paths.iter().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned()).collect();
+    }
+    let record = SolidResults::new(&case.model, &info, &result, files);
+    Ok(Solid { result, record })
+}
+
+/// Passes stages and warnings on to Python.
+struct SolidListener {
+    send: Sender<Event>,
+    clock: Clock,
+}
+
+impl Observer for SolidListener {
+    fn stage(&mut self, stage: Stage) {
+        self.clock.begin(Some(stage));
+        // Nobody listens after a second Ctrl-C.
+        let _ = self.send.send(Event::Stage(stage.name()));
+    }
+
+    fn warning(&mut self, warning: &Warning) {
+        let _ = self.send.send(Event::Warning(warning.to_string()));
     }
 }
 
@@ -163,6 +254,10 @@ struct Clock {
 }
 
 impl Clock {
+    fn new() -> Self {
+        Self { start: Instant::now(), current: None, stages: vec![], n_taken: 0 }
+    }
+
     fn begin(&mut self, stage: Option<Stage>) {
         if let Some((stage, since)) = self.current.take() {
             self.stages.push((stage.name().into(), since.elapsed().as_secs_f64()));

@@ -78,3 +78,9 @@ impl Case {
 pub fn schema() -> String {
     riss::case::json_schema().to_string()
 }
+
+/// The JSON schema of the case file of a solid.
+#[pyfunction]
+pub fn solid_schema() -> String {
+    riss::case::solid_json_schema().to_string()
+}

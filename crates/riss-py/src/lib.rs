@@ -1,12 +1,13 @@
 //! Python bindings: values in, values out. Defaults, names and documentation for users are in `python/riss`.
 //!
 //! Reading order: [`case`], [`analysis`] (a run, and how it talks to Python), [`step`] (what it leaves behind),
-//! [`approximation`] (fields and shape functions anywhere), [`error`].
+//! [`solid`] (the same of solids), [`approximation`] (fields and shape functions anywhere), [`error`].
 
 mod analysis;
 mod approximation;
 mod case;
 mod error;
+mod solid;
 mod step;
 
 use pyo3::prelude::*;
@@ -20,9 +21,13 @@ fn _riss(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<case::Case>()?;
     module.add_class::<step::Step>()?;
     module.add_class::<step::State>()?;
+    module.add_class::<solid::SolidCase>()?;
+    module.add_class::<solid::Solid>()?;
     module.add_class::<approximation::Approximation>()?;
     module.add_function(wrap_pyfunction!(case::schema, module)?)?;
+    module.add_function(wrap_pyfunction!(case::solid_schema, module)?)?;
     module.add_function(wrap_pyfunction!(analysis::run, module)?)?;
+    module.add_function(wrap_pyfunction!(analysis::run_solid, module)?)?;
     module.add_function(wrap_pyfunction!(step::history_csv, module)?)?;
     module.add_function(wrap_pyfunction!(step::restart_state, module)?)
 }

@@ -17,17 +17,23 @@ The sections of a case, their keys and the keys of a tip are those of the case f
 
 from __future__ import annotations
 
-import os
-from typing import Any, Mapping, Optional, Union
-
 from . import plot
 from ._riss import AnalysisError, CaseError, __version__
-from .case import Case, schema
+from .case import Case, SolidCase, read, schema
 from .results import Run, State, Step
+from .solid import SolidRun
 
-__all__ = ["AnalysisError", "Case", "CaseError", "Run", "State", "Step", "__version__", "plot", "read", "schema"]
-
-
-def read(path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = None) -> Case:
-    """The case in a file; the same as :meth:`Case.read`."""
-    return Case.read(path, set=set)
+__all__ = [
+    "AnalysisError",
+    "Case",
+    "CaseError",
+    "Run",
+    "SolidCase",
+    "SolidRun",
+    "State",
+    "Step",
+    "__version__",
+    "plot",
+    "read",
+    "schema",
+]

@@ -8,19 +8,45 @@ from pathlib import Path
 from typing import Any, Callable, Mapping, Optional, Union
 
 from . import _riss
+from ._riss import CaseError
 from .progress import Progress
 from .results import Run, State, Step
+from .solid import SolidRun
 
 StepCallback = Callable[[Step], Union[None, bool, "Case"]]
 
 
-def schema() -> dict[str, Any]:
-    """The JSON Schema of the case file."""
-    return json.loads(_riss.schema())
+def schema(method: str = "element-free-galerkin") -> dict[str, Any]:
+    """The JSON Schema of the case file of a method; bodies in the plane share one, ``"collocation"`` has its own."""
+    return json.loads(_riss.solid_schema() if method == "collocation" else _riss.schema())
 
 
-class Case:
-    """A valid case.
+class _Written:
+    """What cases of all methods share: their text, and what is worth knowing of it."""
+
+    _case: Union[_riss.Case, _riss.SolidCase]
+
+    @property
+    def title(self) -> str:
+        """Its title, or its name."""
+        return self._case.title
+
+    @property
+    def text(self) -> str:
+        """The text of the case file."""
+        return self._case.text
+
+    @property
+    def notes(self) -> list[str]:
+        """What is worth knowing, although the case is valid."""
+        return self._case.notes
+
+    def __repr__(self) -> str:
+        return f"<riss.{type(self).__name__} {self.title!r}>"
+
+
+class Case(_Written):
+    """A valid case of a body in the plane.
 
     ``Case(**sections)`` takes the sections of a case file as keywords: dicts for tables, lists of dicts for ``crack``,
     ``load``, ``support`` and the like. NumPy arrays and numbers are welcome. Files that it names are sought in
@@ -29,9 +55,10 @@ class Case:
     Raises :class:`CaseError` with all problems at once.
     """
 
+    _case: _riss.Case
+
     def __init__(self, *, folder: Union[str, os.PathLike[str]] = ".", **sections: Any) -> None:
-        text = json.dumps(sections, default=_plain)
-        self._case = _riss.Case.from_json(text, Path(folder) / "case.toml")
+        self._case = _riss.Case.from_json(_json(sections), Path(folder) / "case.toml")
 
     @classmethod
     def read(cls, path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = None) -> Case:
@@ -55,24 +82,6 @@ class Case:
         """The same case with other values of some keys, such as ``{"growth.increment": 0.5}``."""
         overrides = self._case.overrides + _overrides(set)
         return self._of(_riss.Case.parse(self._case.text, self._case.path, overrides))
-
-    @property
-    def title(self) -> str:
-        """Its title, or its name."""
-        return self._case.title
-
-    @property
-    def text(self) -> str:
-        """The text of the case file."""
-        return self._case.text
-
-    @property
-    def notes(self) -> list[str]:
-        """What is worth knowing, although the case is valid."""
-        return self._case.notes
-
-    def __repr__(self) -> str:
-        return f"<riss.Case {self.title!r}>"
 
     def run(
         self,
@@ -120,6 +129,76 @@ class Case:
         return run
 
 
+class SolidCase(_Written):
+    """A valid case of a solid in space (``method="collocation"``).
+
+    ``SolidCase(**sections)`` takes the sections of a case file as keywords, as :class:`Case` does; the method is added.
+
+    Raises :class:`CaseError` with all problems at once.
+    """
+
+    _case: _riss.SolidCase
+
+    def __init__(self, *, folder: Union[str, os.PathLike[str]] = ".", **sections: Any) -> None:
+        text = _json({"method": "collocation", **sections})
+        self._case = self._known(_riss.SolidCase.from_json(text, Path(folder) / "case.toml"))
+
+    @classmethod
+    def read(cls, path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = None) -> SolidCase:
+        """The case in a file; ``set`` overrides keys, such as ``{"nodes.spacing": 0.5}``."""
+        return cls._of(_riss.SolidCase.read(Path(path), _overrides(set)))
+
+    @classmethod
+    def parse(
+        cls, text: str, path: Union[str, os.PathLike[str]] = "case.toml", set: Optional[Mapping[str, Any]] = None
+    ) -> SolidCase:
+        """The case in a text; files that it names are sought beside ``path``."""
+        return cls._of(_riss.SolidCase.parse(text, Path(path), _overrides(set)))
+
+    @staticmethod
+    def _known(case: Optional[_riss.SolidCase]) -> _riss.SolidCase:
+        if case is None:
+            raise CaseError("this is a case of a body in the plane; riss.Case reads it")
+        return case
+
+    @classmethod
+    def _of(cls, case: Optional[_riss.SolidCase]) -> SolidCase:
+        self = cls.__new__(cls)
+        self._case = cls._known(case)
+        return self
+
+    def override(self, set: Mapping[str, Any]) -> SolidCase:
+        """The same case with other values of some keys, such as ``{"nodes.spacing": 0.5}``."""
+        overrides = self._case.overrides + _overrides(set)
+        return self._of(_riss.SolidCase.parse(self._case.text, self._case.path, overrides))
+
+    def run(
+        self,
+        *,
+        out: Union[None, str, os.PathLike[str]] = None,
+        progress: Optional[bool] = None,
+        threads: Optional[int] = None,
+    ) -> SolidRun:
+        """Solves the case; the keywords are those of :meth:`Case.run`.
+
+        After Ctrl-C nothing is written, and the run ends when the solver does; a second one does not wait.
+
+        Raises :class:`AnalysisError` if the case cannot be solved.
+        """
+        warnings: list[str] = []
+        folder = None if out is None else Path(out)
+        with Progress(self, progress) as shown:
+            solid = _riss.run_solid(self._case, folder, threads, shown.stage, warnings.append)
+            shown.step()
+        return SolidRun(solid, warnings)
+
+
+def read(path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = None) -> Union[Case, SolidCase]:
+    """The case in a file: a :class:`SolidCase` if its method is ``"collocation"``, else a :class:`Case`."""
+    solid = _riss.SolidCase.read(Path(path), _overrides(set))
+    return Case.read(path, set) if solid is None else SolidCase._of(solid)
+
+
 class _Relay:
     """Keeps steps, and what the callback wants."""
 
@@ -144,6 +223,10 @@ class _Relay:
 
 def _overrides(set: Optional[Mapping[str, Any]]) -> list[str]:
     return [f"{key}={_inline(value)}" for key, value in (set or {}).items()]
+
+
+def _json(sections: Mapping[str, Any]) -> str:
+    return json.dumps(sections, default=_plain)
 
 
 def _inline(value: Any) -> str:

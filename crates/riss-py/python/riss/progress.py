@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 if TYPE_CHECKING:
-    from .case import Case
+    from .case import Case, SolidCase
 
 
 class Progress:
     """Shows steps and stages with tqdm, if that is there."""
 
-    def __init__(self, case: Case, shows: Optional[bool]) -> None:
+    def __init__(self, case: Union[Case, SolidCase], shows: Optional[bool]) -> None:
         self._bar: Any = None
         if shows is False or (shows is None and not _is_seen()):
             return
@@ -22,7 +22,7 @@ class Progress:
             if shows:
                 raise ImportError("a progress bar needs tqdm: pip install 'riss[progress]'") from None
             return
-        growth_steps = case._case.growth_steps
+        growth_steps = getattr(case._case, "growth_steps", None)
         total = 1 if growth_steps is None else growth_steps + 1
         self._bar = tqdm(total=total, desc=case.title, unit="step")
 

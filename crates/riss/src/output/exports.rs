@@ -1,4 +1,4 @@
-//! Cracks and their stress intensity factors for other programs: CSV, VTK, STL, and beta factors for easigrow.
+//! Cracks and their stress intensity factors for other programs: CSV, VTK, STL, and beta factors for easigrow and AFGROW.
 
 use super::results::{CrackResults, Results, StepResults, TipResults};
 use super::vtk::{Array, lines};
@@ -46,24 +46,9 @@ pub struct BetaReference {
 /// Beta factors of a tip as a "1-D beta factor solution file" of easigrow (`--beta file-1d:FILE`): lines of the crack
 /// length over the distance to the free edge, and β = K/(σ √(π c)); none if no step has a factor.
 ///
-/// K is the equivalent factor where growth has one, else `K_I`. The length c is that of the path from its mouth, or from
-/// the middle of the path in the first step if the crack has two tips.
+/// K and c are those of [`afgrow_table`].
 pub fn beta_table(results: &Results, crack: &str, end: End, reference: &BetaReference) -> Option<String> {
-    let find = |step: &StepResults| step.cracks.iter().find(|c| c.name == crack).cloned();
-    let first = results.steps.iter().find_map(find)?;
-    let mut rows: Vec<(f64, f64)> = vec![];
-    for crack in results.steps.iter().filter_map(find) {
-        let Some(tip) = crack.tips.iter().find(|t| t.end == end) else { continue };
-        let Some(k) = tip.k_equivalent.or(tip.k1).filter(|k| *k > 0.0) else { continue };
-        let length = length_from_origin(&first, &crack, end);
-        // A tip that waits gives the same length again.
-        if rows.last().is_none_or(|r| length > r.0) && length > 0.0 {
-            rows.push((length, k / (reference.stress * (PI * length).sqrt())));
-        }
-    }
-    if rows.is_empty() {
-        return None;
-    }
+    let rows = beta_factors(results, crack, end, reference.stress)?;
     let one_line = crack.replace(['\n', '\r'], " ");
     let mut text = format!(
         "# Beta factors of the {} of {one_line}: K/(stress sqrt(pi c)), stress {}, sideways {}\n# c/sideways beta\n",
@@ -75,6 +60,38 @@ pub fn beta_table(results: &Results, crack: &str, end: End, reference: &BetaRefe
         let _ = writeln!(text, "{} {beta}", length / reference.distance);
     }
     Some(text)
+}
+
+/// Beta factors of a tip in the two columns of AFGROW's table of user-defined betas, for pasting: the crack length c
+/// and β = K/(σ √(π c)), with a tab between; none if no step has a factor.
+///
+/// K is the equivalent factor where growth has one, else `K_I`. The length c is that of the path from its mouth, or from
+/// the middle of the path in the first step if the crack has two tips.
+///
+/// - `stress`: σ, of the loads of the case, such as the remote stress [stress]
+pub fn afgrow_table(results: &Results, crack: &str, end: End, stress: f64) -> Option<String> {
+    let mut text = String::new();
+    for (length, beta) in beta_factors(results, crack, end, stress)? {
+        let _ = writeln!(text, "{length}\t{beta}");
+    }
+    Some(text)
+}
+
+/// Crack lengths that grow from row to row, and their beta factors.
+fn beta_factors(results: &Results, crack: &str, end: End, stress: f64) -> Option<Vec<(f64, f64)>> {
+    let find = |step: &StepResults| step.cracks.iter().find(|c| c.name == crack).cloned();
+    let first = results.steps.iter().find_map(find)?;
+    let mut rows: Vec<(f64, f64)> = vec![];
+    for crack in results.steps.iter().filter_map(find) {
+        let Some(tip) = crack.tips.iter().find(|t| t.end == end) else { continue };
+        let Some(k) = tip.k_equivalent.or(tip.k1).filter(|k| *k > 0.0) else { continue };
+        let length = length_from_origin(&first, &crack, end);
+        // A tip that waits gives the same length again.
+        if rows.last().is_none_or(|r| length > r.0) && length > 0.0 {
+            rows.push((length, k / (stress * (PI * length).sqrt())));
+        }
+    }
+    (!rows.is_empty()).then_some(rows)
 }
 
 /// All tips of a run, by name of the crack and end.

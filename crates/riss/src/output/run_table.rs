@@ -1,6 +1,7 @@
 //! Several runs as one table: what was varied, how each ended, and the stress intensity factors of every tip.
 
 use super::results::{Results, RunStatus, TipResults};
+use super::solid_results::SolidResults;
 use crate::crack::End;
 use serde::Serialize;
 
@@ -21,6 +22,9 @@ pub struct RunRow {
     pub cycles: Option<f64>,
     /// Tips of the last step.
     pub tips: Vec<RowTip>,
+    /// Fronts of a solid.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fronts: Vec<RowFront>,
     /// Folder of the results.
     pub folder: String,
 }
@@ -66,7 +70,45 @@ pub struct RowTip {
     pub k_uncertainty: Option<f64>,
 }
 
+/// A front of one run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RowFront {
+    /// Name of the crack, and from the second front of a crack on its number: `penny`, `penny-2`.
+    pub front: String,
+    /// Smallest mode I stress intensity factor along it [stress·√length].
+    #[serde(rename = "K_I_min")]
+    pub k1_min: Option<f64>,
+    /// Largest mode I stress intensity factor along it [stress·√length].
+    #[serde(rename = "K_I_max")]
+    pub k1_max: Option<f64>,
+    /// Error bar where K_I is largest [stress·√length].
+    #[serde(rename = "K_uncertainty")]
+    pub k_uncertainty: Option<f64>,
+}
+
 impl RunRow {
+    /// A run of a solid with results.
+    pub fn of_solid(case: &str, set: &[(String, String)], folder: &str, results: &SolidResults) -> Self {
+        let mut fronts: Vec<RowFront> = vec![];
+        for (k, front) in results.fronts.iter().enumerate() {
+            let number = 1 + results.fronts[..k].iter().filter(|f| f.crack == front.crack).count();
+            let name = if number == 1 { front.crack.clone() } else { format!("{}-{number}", front.crack) };
+            let mut known: Vec<_> = front.points.iter().filter_map(|p| Some((p.k1?, p.k_uncertainty))).collect();
+            known.sort_by(|a, b| a.0.total_cmp(&b.0));
+            fronts.push(RowFront {
+                front: name,
+                k1_min: known.first().map(|k| k.0),
+                k1_max: known.last().map(|k| k.0),
+                k_uncertainty: known.last().and_then(|k| k.1),
+            });
+        }
+        let status = match results.status {
+            RunStatus::Done => RowStatus::Done,
+            RunStatus::Stopped => RowStatus::Stopped,
+        };
+        Self { status, reason: None, steps: 1, fronts, ..Self::failed(case, set, folder, "") }
+    }
+
     /// A run with results.
     pub fn new(case: &str, set: &[(String, String)], folder: &str, results: &Results) -> Self {
         let last = results.steps.last();
@@ -89,6 +131,7 @@ impl RunRow {
             cycles: last.and_then(|s| s.cycles),
             tips: last
                 .map_or(vec![], |s| s.cracks.iter().flat_map(|c| c.tips.iter().map(|t| tip(&c.name, t))).collect()),
+            fronts: vec![],
             folder: folder.into(),
         }
     }
@@ -103,6 +146,7 @@ impl RunRow {
             steps: 0,
             cycles: None,
             tips: vec![],
+            fronts: vec![],
             folder: folder.into(),
         }
     }
@@ -110,6 +154,11 @@ impl RunRow {
     /// The value of a key, if it was set for this run.
     pub fn value(&self, key: &str) -> Option<&str> {
         self.set.iter().find(|s| s.0 == key).map(|s| s.1.as_str())
+    }
+
+    /// A front by name.
+    pub fn front(&self, name: &str) -> Option<&RowFront> {
+        self.fronts.iter().find(|f| f.front == name)
     }
 
     /// The tip at one end of a crack.
@@ -128,6 +177,11 @@ pub fn tips(rows: &[RunRow]) -> Vec<(String, End)> {
     distinct(rows.iter().flat_map(|r| r.tips.iter().map(|t| (t.crack.clone(), t.end))))
 }
 
+/// Names of all fronts of any of the runs, in the order in which they come.
+pub fn fronts(rows: &[RunRow]) -> Vec<String> {
+    distinct(rows.iter().flat_map(|r| r.fronts.iter().map(|f| f.front.clone())))
+}
+
 fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut list = vec![];
     for item in items {
@@ -140,13 +194,16 @@ fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
 
 /// The table as CSV, one run a line; what is not known is empty.
 pub fn table_csv(rows: &[RunRow]) -> String {
-    let (keys, tips) = (keys(rows), tips(rows));
+    let (keys, tips, fronts) = (keys(rows), tips(rows), fronts(rows));
     let mut head = vec!["case".to_string()];
     head.extend(keys.iter().cloned());
     head.extend(["status", "reason", "steps", "cycles"].map(String::from));
     for (crack, end) in &tips {
         let name = end_name(*end);
         head.extend(["K_I", "K_II", "K_uncertainty"].map(|k| format!("{crack}.{name}.{k}")));
+    }
+    for name in &fronts {
+        head.extend(["K_I_min", "K_I_max", "K_uncertainty"].map(|k| format!("{name}.{k}")));
     }
     head.push("folder".into());
     let mut writer = csv::Writer::from_writer(vec![]);
@@ -162,6 +219,11 @@ pub fn table_csv(rows: &[RunRow]) -> String {
             let tip = row.tip(crack, *end);
             record.extend([tip.and_then(|t| t.k1), tip.and_then(|t| t.k2)].map(number));
             record.push(number(tip.and_then(|t| t.k_uncertainty)));
+        }
+        for name in &fronts {
+            let front = row.front(name);
+            record.extend([front.and_then(|f| f.k1_min), front.and_then(|f| f.k1_max)].map(number));
+            record.push(number(front.and_then(|f| f.k_uncertainty)));
         }
         record.push(row.folder.clone());
         write(&record);

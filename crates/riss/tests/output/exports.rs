@@ -5,7 +5,7 @@ use crate::vtk::arrays;
 use riss::crack::{End, EndKind};
 use riss::math::{Vector2, cross};
 use riss::output::Results;
-use riss::output::exports::{BetaReference, CrackFormat, beta_table, cracks_as, tips};
+use riss::output::exports::{BetaReference, CrackFormat, afgrow_table, beta_table, cracks_as, tips};
 use std::f64::consts::PI;
 
 /// A run of three steps with a crack along `y = 0` from -1 on that grows by 0.25, of `K = k(a)`.
@@ -47,6 +47,10 @@ fn beta_factors_are_those_that_made_k() {
     let reference = BetaReference { stress: 40.0, distance: 5.0 };
     let text = beta_table(&results, "crack-1", End::End, &reference).unwrap();
     check_rows(table(&text), &[[0.2, 1.125], [0.25, 1.15625], [0.3, 1.1875]]);
+    // The same over the length itself; nothing but numbers, with a tab between.
+    let text = afgrow_table(&results, "crack-1", End::End, 40.0).unwrap();
+    check_rows(table(&text), &[[1.0, 1.125], [1.25, 1.15625], [1.5, 1.1875]]);
+    assert!(text.lines().all(|l| l.split('\t').count() == 2));
     assert_eq!(tips(&results), [("crack-1".to_string(), End::End)]);
     assert!(beta_table(&results, "crack-1", End::Start, &reference).is_none());
     assert!(beta_table(&results, "crack-2", End::End, &reference).is_none());

@@ -102,7 +102,7 @@ pub(in crate::case) enum SolidGeometry {
     Cylinder(SolidCylinder),
     /// Part surface.
     Ball(SolidBall),
-    /// Triangles of an STL file; its smooth pieces are the parts face-1, face-2, ...
+    /// Triangles of an STL file; its smooth pieces are the parts face-1, face-2 and so on
     Stl(SolidMeshFile),
     /// Surface triangles of a Gmsh mesh; parts are its physical surfaces.
     Gmsh(SolidMeshFile),
