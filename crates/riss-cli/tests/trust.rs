@@ -82,24 +82,24 @@ fn files_outside_the_folder_of_the_case_are_read_only_where_that_is_allowed() {
 #[test]
 fn runs_that_need_more_memory_than_there_is_are_refused_with_the_number() {
     let folder = scratch("memory", CASE);
-    // 24 / 0.0035² = 2 million nodes, 57 kB each.
+    // 24 / 0.0035² = 2 million nodes, 32 kB each.
     let many = ["run", "case.toml", "--set", "nodes.layout.graded={spacing=3.5e-3}", "--memory-limit", "20GB"];
     let output = riss(&folder, &many);
     let words = message(&output);
     assert_eq!(output.status.code(), Some(2), "{words}");
     assert!(
-        words.contains("about 2.0e6 nodes, which need about 111.7 GB of memory, and 20.0 GB are allowed"),
+        words.contains("about 2.0e6 nodes, which need about 62.7 GB of memory, and 20.0 GB are allowed"),
         "{words}"
     );
     assert!(!folder.join("case.riss-out").exists() && !folder.join("memory.riss-out").exists());
-    // 0.1 mm everywhere are 2400 nodes, 57 kB each and 30 MB.
+    // 0.1 mm everywhere are 2400 nodes, 32 kB each and 30 MB.
     let coarse =
         ["run", "case.toml", "--set", "nodes.layout.graded={spacing=0.1,tip_spacing=0.1}", "-q", "--memory-limit"];
     let output = riss(&folder, &[&coarse[..], &["100MB"]].concat());
     let words = message(&output);
     assert_eq!(output.status.code(), Some(2), "{words}");
     assert!(
-        words.contains("about 2400 nodes") && words.contains("167 MB") && words.contains("100 MB are allowed"),
+        words.contains("about 2400 nodes") && words.contains("107 MB") && words.contains("100 MB are allowed"),
         "{words}"
     );
     for limit in ["300MB", "none"] {
