@@ -96,7 +96,7 @@ fn changed(input: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
 fn check(target: &str, run: fn(&[u8]), n: usize) {
     let corpus = corpus(target);
     assert!(!corpus.is_empty());
-    let mut random = Random(0x5ee_d0f_f0ee ^ target.len() as u64);
+    let mut random = Random(0x005e_ed0f_f0ee ^ target.len() as u64);
     let replayed = corpus.iter().map(|(path, bytes)| (path.display().to_string(), bytes.clone()));
     let mut inputs: Vec<(String, Vec<u8>)> = replayed.collect();
     for k in 0..n {
