@@ -14,6 +14,7 @@ pub mod node_function;
 pub mod record;
 pub mod refinement;
 pub mod settings;
+mod solid_error_bars;
 mod solid_guard_rails;
 pub mod solid_record;
 pub mod solid_static;

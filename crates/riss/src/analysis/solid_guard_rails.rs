@@ -12,6 +12,7 @@ use crate::geometry::surface::Surface;
 use crate::geometry::triangle::{Triangle, area_vector};
 use crate::math::Vector3;
 use crate::model::{RigidMotion, SolidModel, SurfacePoint, VectorField};
+use crate::nodes::solid::thinnest_wall;
 
 /// Overlap of crack faces over the largest opening or sliding that is beyond the noise of coarse nodes.
 const OVERLAP: f64 = 0.03;
@@ -19,6 +20,10 @@ const OVERLAP: f64 = 0.03;
 const SMALL_FACTOR: f64 = 0.02;
 /// Least number of nodes on a void: a ball with as many around its equator as a hole in the plane needs.
 const ON_VOID: f64 = 80.0;
+/// Least number of spacings through a wall.
+const THROUGH_WALL: f64 = 3.0;
+/// Least number of spacings over the radius of curvature of a front.
+const OVER_BEND: f64 = 8.0;
 /// Nodes for each square of the spacing on a surface: they stand in triangles.
 const PER_SQUARE: f64 = 1.1547;
 /// Forces out of balance by more than this share are no error of their integration.
@@ -35,6 +40,7 @@ pub(super) fn inspect(model: &SolidModel, settings: &SolidSettings, result: &Sol
     }
     (0..model.cracks.len()).for_each(|crack| overlap(model, crack, result, warnings));
     voids(model, settings, warnings);
+    thin(model, settings, warnings);
     balance(model, warnings);
 }
 
@@ -76,6 +82,18 @@ fn ligament(body: &Surface, p: &FrontPoint) -> f64 {
     cut
 }
 
+/// Whether nodes resolve the body where it is thin.
+fn thin(model: &SolidModel, settings: &SolidSettings, warnings: &mut Warnings) {
+    let Some((wall, through)) = thinnest_wall(&model.body, &settings.spacing, THROUGH_WALL) else { return };
+    let message = format!(
+        "the body is {:.4} thick at {}, with only {through:.1} node spacings through it, and {THROUGH_WALL} are the least: what \
+         bends there is wrong, and K with it; ask for a smaller nodes.spacing",
+        wall.thickness,
+        place(wall.corners.iter().sum::<Vector3>() / 3.0)
+    );
+    warnings.about("nodes", message);
+}
+
 /// Size of the plastic zone against the crack and what is ahead of it.
 fn plastic_zone(model: &SolidModel, front: &FrontRecord, warnings: &mut Warnings) {
     let Some(yield_stress) = model.yield_stress else { return };
@@ -106,18 +124,23 @@ fn spacing(model: &SolidModel, settings: &SolidSettings, front: &FrontRecord, wa
     let length = crack_length(model, front);
     let lengths = |p: &FrontPoint| {
         let radius = 1.0 / p.curvature.abs().max(f64::MIN_POSITIVE);
-        [(length, "its crack"), (radius, "its radius of curvature"), (ligament(&model.body, p), "the ligament ahead")]
+        let ahead = ligament(&model.body, p);
+        let least = [OVER_LIGAMENT, OVER_BEND, OVER_LIGAMENT];
+        let what = ["its crack", "its radius of curvature", "the ligament ahead"];
+        [length, radius, ahead].into_iter().zip(what).zip(least)
     };
-    let all = front.points.iter().flat_map(|p| lengths(&p.point).map(|(l, what)| (l, what, p.point.position)));
-    let spacings = |l: f64, at: Vector3| l / settings.spacing.at(at);
-    let Some((l, what, at)) = all.min_by(|a, b| spacings(a.0, a.2).total_cmp(&spacings(b.0, b.2))) else { return };
-    if spacings(l, at) < OVER_LIGAMENT {
+    let all = front.points.iter().flat_map(|p| {
+        let h = settings.spacing.at(p.point.position);
+        lengths(&p.point).map(move |((l, what), least)| (l / h / least, l, what, least, p.point.position))
+    });
+    let Some((share, l, what, least, at)) = all.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+    if share < 1.0 {
         let message = format!(
-            "front of {} at {}: only {:.1} node spacings over {what}, {l:.4} long, and {OVER_LIGAMENT} are the least; ask for a \
+            "front of {} at {}: only {:.1} node spacings over {what}, {l:.4} long, and {least} are the least; ask for a \
              smaller nodes.front_spacing",
             model.crack_names[front.crack],
             place(at),
-            spacings(l, at)
+            share * least
         );
         warnings.about_crack(front.crack, message);
     }

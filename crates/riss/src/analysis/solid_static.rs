@@ -1,6 +1,7 @@
 //! Static analysis of a cracked solid by point collocation [C3D].
 
 use super::record::{Observer, Stage};
+use super::solid_error_bars::widen_front_bars;
 use super::solid_guard_rails::inspect;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
 use super::warnings::Warnings;
@@ -91,13 +92,11 @@ pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut
                     Some(r) => {
                         let radii = DISCS.map(|share| share * r);
                         let frame = frame(p);
-                        Some(FrontFactors::of(&front_integrals(
-                            &collocation,
-                            &solution.displacements,
-                            &frame,
-                            crack,
-                            &radii,
-                        )?))
+                        let displacements = &solution.displacements;
+                        let discs = front_integrals(&collocation, displacements, &frame, crack, &radii)?;
+                        let mut factors = FrontFactors::of(&discs);
+                        widen_front_bars(&mut factors, &model.solid.material, h * p.curvature.abs(), r);
+                        Some(factors)
                     }
                 };
                 Ok(FrontPointRecord { point: *p, factors, radius: largest })
@@ -189,6 +188,7 @@ mod tests {
     use super::super::record::Silent;
     use super::*;
     use crate::case::AnyCase;
+    use crate::math::Vector3;
 
     fn solve(text: &str) -> (SolidModel, SolidResult) {
         let case = AnyCase::parse(text, "case.toml".as_ref(), &[]).map_err(|e| e.to_string()).unwrap();
@@ -229,6 +229,20 @@ mod tests {
     fn a_shaft_under_tension() {
         let shaft = "geometry.cylinder = { from = [0, 0, -1], to = [0, 0, 1], radius = 0.8 }\nnodes.spacing = 0.3";
         check_uniform(shaft, Matrix::<3>::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0));
+    }
+
+    /// Between planes of symmetry a slab is in plane strain, and nothing else holds it.
+    #[test]
+    fn a_slab_between_planes_of_symmetry() {
+        let (_, result) = solve(
+            "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 1000, poisson = 0.3 }\n\
+             geometry.box = { lower = [0, 0, 0], upper = [1, 0.5, 2] }\nnodes.spacing = 0.25\n\
+             support = [{ on = ['y-min', 'y-max'], normal = 0 }]\n\
+             load = [{ on = 'z-max', traction = [0, 0, 1] }, { on = 'z-min', traction = [0, 0, -1] }]",
+        );
+        let expected = Matrix::from_diagonal(&Vector3::new(0.0, 0.3, 1.0));
+        assert!(result.stresses.iter().all(|s| (s - expected).norm() < 1e-5));
+        assert!(result.displacements.iter().sum::<Vector3>().norm() < 1e-6);
     }
 
     /// Cracks along the tension are not felt.

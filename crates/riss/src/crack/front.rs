@@ -3,6 +3,9 @@
 use crate::math::Vector3;
 use serde::{Deserialize, Serialize};
 
+/// Sums of unit vectors that are shorter than this have no direction: they were opposite.
+const OPPOSITE: f64 = 1e-6;
+
 /// A point of a crack front with its axes, which are right-handed: `ahead × normal = tangent`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrontPoint {
@@ -44,8 +47,8 @@ impl CrackFront {
             let (back, forth) = (positions[k] - before, after - positions[k]);
             // Tangent of the circle through the three points; each side counts by the length of the other.
             let weighted = back * forth.norm_squared() + forth * back.norm_squared();
-            let chord = weighted.try_normalize(0.0).unwrap_or_else(|| (after - before).normalize());
-            let normal = (normals[k] - chord * normals[k].dot(&chord)).normalize();
+            let chord = weighted.try_normalize(0.0).or((after - before).try_normalize(0.0)).unwrap_or(Vector3::x());
+            let normal = across(chord, &[normals[k]]);
             let ahead = normal.cross(&chord);
             let curvature = curvature(back, forth, ahead);
             points.push(FrontPoint { position: positions[k], ahead, normal, tangent: chord, curvature, s });
@@ -64,9 +67,9 @@ impl CrackFront {
         let piece = if k + 1 < n { q.s - p.s } else { self.length - p.s };
         let t = ((s - p.s) / piece).clamp(0.0, 1.0);
         let mix = |a: Vector3, b: Vector3| a * (1.0 - t) + b * t;
-        let tangent = mix(p.tangent, q.tangent).normalize();
-        let normal = mix(p.normal, q.normal);
-        let normal = (normal - tangent * normal.dot(&tangent)).normalize();
+        let nearer = if t < 0.5 { p } else { q };
+        let tangent = mix(p.tangent, q.tangent).try_normalize(OPPOSITE).unwrap_or(nearer.tangent);
+        let normal = across(tangent, &[mix(p.normal, q.normal), nearer.normal]);
         FrontPoint {
             position: mix(p.position, q.position),
             ahead: normal.cross(&tangent),
@@ -91,10 +94,46 @@ impl CrackFront {
     }
 }
 
+/// The first of some directions that is not along a tangent, as the unit vector normal to that; without any, one of all.
+fn across(tangent: Vector3, directions: &[Vector3]) -> Vector3 {
+    let axis = Vector3::ith(tangent.iamin(), 1.0);
+    let across = |d: &Vector3| (d - tangent * d.dot(&tangent)).try_normalize(OPPOSITE);
+    directions.iter().chain([&axis]).find_map(across).unwrap_or(axis)
+}
+
 /// Curvature of the circle through three points, positive if it bends away from `ahead`; zero at ends.
 fn curvature(back: Vector3, forth: Vector3, ahead: Vector3) -> f64 {
     let product = back.norm() * forth.norm() * (back + forth).norm();
     let turn = back.cross(&forth).norm();
     let bend = (back / back.norm().max(f64::MIN_POSITIVE) - forth / forth.norm().max(f64::MIN_POSITIVE)).dot(&ahead);
     if product > 0.0 { 2.0 * turn / product * bend.signum() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A front that turns around on itself, as between flat triangles: its axes are still unit vectors.
+    #[test]
+    fn axes_of_a_front_that_turns_back_are_orthonormal() {
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(Vector3::from);
+        let up = Vector3::z();
+        for normals in [[up, -up, up, -up], [Vector3::x(), up, -up, Vector3::zeros()]] {
+            for is_closed in [false, true] {
+                let front = CrackFront::new(&positions, &normals, is_closed);
+                for p in front.sampled(17) {
+                    for (a, b, dot) in [
+                        (p.ahead, p.ahead, 1.0),
+                        (p.normal, p.normal, 1.0),
+                        (p.tangent, p.tangent, 1.0),
+                        (p.ahead, p.normal, 0.0),
+                        (p.normal, p.tangent, 0.0),
+                        (p.tangent, p.ahead, 0.0),
+                    ] {
+                        assert!((a.dot(&b) - dot).abs() < 1e-12, "{p:?}");
+                    }
+                }
+            }
+        }
+    }
 }

@@ -57,6 +57,8 @@ pub struct FrontFactors {
     pub t_uncertainty: f64,
     /// J-integral, mean of all discs [stress·length].
     pub j: f64,
+    /// Largest deviation of J of a disc from the mean [stress·length].
+    pub j_uncertainty: f64,
 }
 
 impl FrontFactors {
@@ -66,12 +68,14 @@ impl FrontFactors {
         let factors = std::array::from_fn(|m| discs.iter().map(|d| d.factors[m]).sum::<f64>() / n);
         let off = |d: &FrontIntegrals| (0..3).map(|m| (d.factors[m] - factors[m]).abs()).fold(0.0, f64::max);
         let t_stress = discs.iter().map(|d| d.t_stress).sum::<f64>() / n;
+        let j = discs.iter().map(|d| d.j).sum::<f64>() / n;
         Self {
             factors,
             uncertainty: discs.iter().map(off).fold(0.0, f64::max),
             t_stress,
             t_uncertainty: discs.iter().map(|d| (d.t_stress - t_stress).abs()).fold(0.0, f64::max),
-            j: discs.iter().map(|d| d.j).sum::<f64>() / n,
+            j,
+            j_uncertainty: discs.iter().map(|d| (d.j - j).abs()).fold(0.0, f64::max),
         }
     }
 }

@@ -88,12 +88,13 @@ fn push_front(page: &mut String, index: usize, front: &FrontResults) {
     page.push_str(&chart(front, &FACTORS, "stress intensity factors [stress·√length] over the length along the front"));
     page.push_str(&chart(front, &T_STRESS, "T-stress [stress] over the length along the front"));
     page.push_str("</div>\n<div class=\"scroll\"><table>\n<tr>");
-    let heads = ["s", "x", "y", "z", "K_I", "K_II", "K_III", "± K", "T", "± T", "J", "disc radius"];
+    let heads = ["s", "x", "y", "z", "K_I", "K_II", "K_III", "± K", "T", "± T", "J", "± J", "disc radius"];
     heads.iter().for_each(|head| page.push_str(&format!("<th>{head}")));
     for p in &front.points {
         let [x, y, z] = p.position;
-        let cells = [p.s, x, y, z, p.k1, p.k2, p.k3, p.k_uncertainty, p.t_stress, p.t_uncertainty, p.j, p.disc_radius];
-        push_row(page, &cells.map(cell));
+        let factors = [p.k1, p.k2, p.k3, p.k_uncertainty, p.t_stress, p.t_uncertainty, p.j, p.j_uncertainty];
+        let cells = [p.s, x, y, z].into_iter().chain(factors).chain([p.disc_radius]).map(cell);
+        push_row(page, &cells.collect::<Vec<_>>());
     }
     page.push_str("\n</table></div>\n</section>\n");
 }

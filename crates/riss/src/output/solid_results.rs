@@ -116,18 +116,21 @@ pub struct FrontPointResults {
     /// Stress intensity factor of mode III [stress·√length].
     #[serde(rename = "K_III")]
     pub k3: Option<f64>,
-    /// Largest deviation of a factor over the discs that it was computed on [stress·√length].
+    /// Error bar of the factors [stress·√length].
     #[serde(rename = "K_uncertainty")]
     pub k_uncertainty: Option<f64>,
     /// Stress along `ahead` that does not fade at the front [stress].
     #[serde(rename = "T")]
     pub t_stress: Option<f64>,
-    /// Largest deviation of the T-stress over the discs [stress].
+    /// Error bar of the T-stress [stress].
     #[serde(rename = "T_uncertainty")]
     pub t_uncertainty: Option<f64>,
     /// J-integral [stress·length].
     #[serde(rename = "J")]
     pub j: Option<f64>,
+    /// Error bar of J [stress·length].
+    #[serde(rename = "J_uncertainty")]
+    pub j_uncertainty: Option<f64>,
     /// Radius of the largest disc [length].
     pub disc_radius: Option<f64>,
 }
@@ -213,6 +216,7 @@ fn point(record: &FrontPointRecord) -> FrontPointResults {
         t_stress: factors.and_then(|f| finite(f.t_stress)),
         t_uncertainty: factors.and_then(|f| finite(f.t_uncertainty)),
         j: factors.and_then(|f| finite(f.j)),
+        j_uncertainty: factors.and_then(|f| finite(f.j_uncertainty)),
         disc_radius: record.radius.and_then(finite),
     }
 }

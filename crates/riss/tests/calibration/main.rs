@@ -6,6 +6,8 @@
 //! `change` and `change_of_T` are what halving all elements has changed last. J follows from the factors. An ordinary run takes some of the bodies at the default
 //! nodes; with `RISS_CALIBRATION` set all of them, on coarser and finer nodes too (`cargo xtask calibrate`).
 
+mod fronts;
+
 use riss::analysis::{Silent, linear_static};
 use riss::case::Case;
 use riss::crack::End;

@@ -110,8 +110,9 @@ pub fn read_abaqus_as_case(bytes: &[u8], path: &Path) -> Result<(String, Vec<Str
         text += "files = \"anywhere\"\n";
     }
     text += "# Units are those of the input file; name them: units = \"mm, N, MPa\"\n";
-    text +=
-        &format!("\n# Parts: {}\n", model.domain.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "));
+    // A comment ends at a line break, and TOML allows no other control characters in it.
+    let parts: Vec<String> = model.domain.parts.iter().map(|p| p.name.replace(char::is_control, "?")).collect();
+    text += &format!("\n# Parts: {}\n", parts.join(", "));
     text += &format!("[geometry.abaqus]\nfile = {file}\n\n");
     text += &toml::to_string(&model.tables).map_err(|e| e.to_string())?;
     text += "\n# Cracks are drawn on the uncracked body.\n# [[crack]]\n# path = [[0, 0], [1, 0]]\n";

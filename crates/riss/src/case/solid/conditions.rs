@@ -94,10 +94,7 @@ fn check_held(file: &SolidFile, held: bool, report: &mut Report) {
             problem.suggest("add a [[support]], or rigid_motion = \"mean-is-zero\" if the loads balance");
             report.problems.push(problem);
         }
-        RigidMotion::MeanIsZero if held => {
-            let message = "the body is held twice, by supports and by its mean motion";
-            report.error("rigid_motion", message).suggest("remove one of them");
-        }
+        // What supports hold stays held: a slab between planes of symmetry is free to move along them.
         RigidMotion::Supported | RigidMotion::MeanIsZero => {}
     }
 }

@@ -7,12 +7,17 @@ use crate::case::build::report::Report;
 use crate::crack::CrackSurface;
 use crate::geometry::surface::Surface;
 use crate::math::Vector3;
-use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SolidSpacing, estimated_solid_nodes};
+use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SolidSpacing, estimated_solid_nodes, wall_regions};
 
 /// Spacing over the cube root of the volume, if the case says none.
 const BODY_FRACTION: f64 = 1.0 / 20.0;
 /// Spacing at fronts over the size of the crack, if the case says none.
 const FRONT_FRACTION: f64 = 1.0 / 30.0;
+/// The same over the least radius of curvature of a front, and no less than this share of the size of the crack.
+const BEND_FRACTION: f64 = 1.0 / 13.0;
+const LEAST_FRACTION: f64 = 1.0 / 250.0;
+/// Fronts that turn by more at a point have a corner there, and no radius [rad].
+const CORNER: f64 = 0.4;
 /// Growth of the spacing, if the case says none.
 const GROWTH: f64 = 0.2;
 /// Least spacing over the size of the body; below it positions have too few digits left.
@@ -39,19 +44,21 @@ pub(super) fn settings(
     for (index, finer) in nodes.finer.iter().enumerate() {
         checked(Some(finer.spacing), &format!("nodes.finer[{index}].spacing"), report);
     }
+    if !sound {
+        return None;
+    }
     let largest = nodes.spacing.unwrap_or_else(|| BODY_FRACTION * body.volume().cbrt());
-    let mut regions = vec![];
+    let mut regions = wall_regions(body, largest);
     for crack in cracks {
         let extent = crack.surface.bounds().size().norm() / 2f64.sqrt();
-        let h = nodes.front_spacing.unwrap_or_else(|| (FRONT_FRACTION * extent).min(largest));
+        let by_size = (FRONT_FRACTION * extent).min(largest);
+        let by_bend = (BEND_FRACTION * least_radius(crack)).max(LEAST_FRACTION * extent);
+        let h = nodes.front_spacing.unwrap_or(by_size.min(by_bend));
         let pieces = crack.fronts.iter().flat_map(|f| f.segments().collect::<Vec<_>>());
         regions.extend(pieces.map(|s| (Region::Segment(s), h)));
     }
     for (index, finer) in nodes.finer.iter().enumerate() {
         regions.extend(finer_regions(finer, &format!("nodes.finer[{index}]"), body, report)?);
-    }
-    if !sound {
-        return None;
     }
     let smallest = regions.iter().map(|r| r.1).fold(largest, f64::min);
     let regions = regions.into_iter().filter(|r| r.1 < largest).collect();
@@ -68,6 +75,13 @@ pub(super) fn settings(
         collocation: file.collocation,
         points_on_front: file.fracture.points,
     })
+}
+
+/// Least radius of curvature of the fronts of a crack, corners left out [length].
+fn least_radius(crack: &CrackSurface) -> f64 {
+    let points = crack.fronts.iter().flat_map(|f| f.points.iter().map(|p| (p, f.length / f.points.len() as f64)));
+    let bends = points.map(|(p, step)| (p.curvature.abs(), step)).filter(|(c, step)| c * step < CORNER);
+    1.0 / bends.map(|b| b.0).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 fn finer_regions(finer: &Finer, key: &str, body: &Surface, report: &mut Report) -> Option<Vec<(Region, f64)>> {

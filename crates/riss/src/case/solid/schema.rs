@@ -54,7 +54,7 @@ pub(in crate::case) struct SolidFile {
     /// Force per volume.
     #[serde(default)]
     pub body_force: Option<SolidBodyForce>,
-    /// What holds the body as a whole.
+    /// What holds the body as a whole; with `mean-is-zero`, in the motions that supports leave free.
     #[serde(default)]
     pub rigid_motion: RigidMotion,
     /// Known solution, for `exact = true`.

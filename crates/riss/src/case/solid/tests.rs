@@ -122,7 +122,6 @@ fn contradictions_are_named() {
     };
     check("remote_stress.zz = 1", "nothing holds the body");
     check("rigid_motion = 'mean-is-zero'", "nothing loads the body");
-    check("rigid_motion = 'mean-is-zero'\nsupport = [{ on = 'z-min', z = 0 }]", "held twice");
     check("support = [{ on = 'z-min' }]", "no direction is given");
     check("support = [{ on = 'z-min', z = 1 }, { on = ['x-min', 'z-min'], x = 0 }]", "already has a support");
     check("support = [{ on = 'boundary', exact = true }]", "no sound [exact] section");

@@ -5,6 +5,9 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::triangle::{Feature, closest, cuts_segment};
 use crate::math::Vector3;
 
+/// Surfaces are two sides of a wall if the cosine of the angle between them is larger.
+const PARALLEL: f64 = 0.9;
+
 /// The point of a surface that is closest to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
@@ -120,5 +123,25 @@ impl Surface {
         let mut is_cut = false;
         self.tree.visit(&Aabb::of_points([p, q]), |t| is_cut = is_cut || cuts_segment(self.corners(t), p, q));
         is_cut
+    }
+
+    /// Distance through the material from a point of a triangle to the surface across, if that is within `limit` and
+    /// nearly parallel [length].
+    pub fn wall(&self, triangle: u32, p: Vector3, limit: f64) -> Option<f64> {
+        let normal = self.normals()[triangle as usize];
+        let q = p - normal * limit;
+        let mut nearest: Option<(f64, u32)> = None;
+        self.tree.visit(&Aabb::of_points([p, q]), |t| {
+            let corners = self.corners(t);
+            if t == triangle || !cuts_segment(corners, p, q) {
+                return;
+            }
+            let across = self.normals()[t as usize];
+            let distance = (p - corners[0]).dot(&across) / normal.dot(&across);
+            if nearest.is_none_or(|n| (distance, t) < n) {
+                nearest = Some((distance, t));
+            }
+        });
+        nearest.filter(|(_, t)| self.normals()[*t as usize].dot(&normal) < -PARALLEL).map(|n| n.0)
     }
 }

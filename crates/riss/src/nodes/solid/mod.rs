@@ -14,6 +14,7 @@ mod sites;
 pub mod spacing;
 #[cfg(test)]
 mod tests;
+mod walls;
 
 use super::cloud::Cloud;
 use crate::crack::CrackSurface;
@@ -24,6 +25,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sites::Sites;
 pub use spacing::{Region, SolidSpacing};
+pub use walls::{thinnest_wall, wall_regions};
 
 /// Least distance of two nodes over the mean of their spacings.
 pub const CLOSENESS: f64 = 0.8;
