@@ -4,6 +4,7 @@
 //! Each is said once for each crack or void, with the key of the case that it is about and a remedy.
 
 use super::guard_rails::{LINEAR, OVER_LIGAMENT, OVERLAP_OF_STILL};
+use super::solid_error_bars::crack_length;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
 use super::solid_static::SolidSettings;
 use super::warnings::{Warnings, crack_key};
@@ -64,14 +65,6 @@ fn discs(model: &SolidModel, settings: &SolidSettings, front: &FrontRecord, warn
     warnings.about_crack(front.crack, message);
 }
 
-/// Length of a crack as handbooks have it: area over length of the front, twice that for a closed one, which is the radius
-/// of a disc and the depth of an edge crack.
-fn crack_length(model: &SolidModel, front: &FrontRecord) -> f64 {
-    let crack = &model.cracks[front.crack];
-    let along: f64 = crack.fronts.iter().map(|f| f.length).sum();
-    crack.surface.area(None) / along * if front.is_closed { 2.0 } else { 1.0 }
-}
-
 /// Distance ahead of a front to the boundary [length].
 fn ligament(body: &Surface, p: &FrontPoint) -> f64 {
     let (mut free, mut cut) = (0.0, body.bounds().size().norm());
@@ -97,7 +90,7 @@ fn thin(model: &SolidModel, settings: &SolidSettings, warnings: &mut Warnings) {
 /// Size of the plastic zone against the crack and what is ahead of it.
 fn plastic_zone(model: &SolidModel, front: &FrontRecord, warnings: &mut Warnings) {
     let Some(yield_stress) = model.yield_stress else { return };
-    let length = crack_length(model, front);
+    let length = crack_length(&model.cracks[front.crack], front.is_closed);
     let needed = |p: &FrontPointRecord| {
         let factors = p.factors?.factors;
         Some(LINEAR * factors.iter().map(|k| k * k).sum::<f64>() / yield_stress.powi(2))
@@ -121,7 +114,7 @@ fn plastic_zone(model: &SolidModel, front: &FrontRecord, warnings: &mut Warnings
 
 /// Whether nodes resolve the curve of a front, its crack, and what is ahead.
 fn spacing(model: &SolidModel, settings: &SolidSettings, front: &FrontRecord, warnings: &mut Warnings) {
-    let length = crack_length(model, front);
+    let length = crack_length(&model.cracks[front.crack], front.is_closed);
     let lengths = |p: &FrontPoint| {
         let radius = 1.0 / p.curvature.abs().max(f64::MIN_POSITIVE);
         let ahead = ligament(&model.body, p);

@@ -1,7 +1,7 @@
 //! Static analysis of a cracked solid by point collocation [C3D].
 
 use super::record::{Observer, Stage};
-use super::solid_error_bars::widen_front_bars;
+use super::solid_error_bars::{crack_length, widen_front_bars};
 use super::solid_guard_rails::inspect;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
 use super::warnings::Warnings;
@@ -23,9 +23,9 @@ const DISCS: [f64; 3] = [0.5, 0.75, 1.0];
 /// Largest disc over the spacing at the front, and the smallest that is of use.
 const LARGEST_DISC: f64 = 8.0;
 const SMALLEST_DISC: f64 = 2.0;
-/// Reach of the functions of a front over its least radius of curvature, and the least share of what is asked for.
+/// Reach of the functions of a front over its least radius of curvature, and the least over the spacing there.
 const BEND: f64 = 0.6;
-const LEAST_REACH: f64 = 2.0 / 3.0;
+const LEAST_REACH: f64 = 8.0;
 /// Directions in which a disc is probed.
 const PROBES: usize = 24;
 /// Share of a turn on each side of the crack that is not probed.
@@ -95,7 +95,9 @@ pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut
                         let displacements = &solution.displacements;
                         let discs = front_integrals(&collocation, displacements, &frame, crack, &radii)?;
                         let mut factors = FrontFactors::of(&discs);
-                        widen_front_bars(&mut factors, &model.solid.material, h * p.curvature.abs(), r);
+                        let open = if front.is_closed { 0.0 } else { h / crack_length(surface, false) };
+                        let shares = [h * p.curvature.abs(), open];
+                        widen_front_bars(&mut factors, &model.solid.material, shares, r);
                         Some(factors)
                     }
                 };
@@ -139,7 +141,7 @@ fn enriched(front: &CrackFront, settings: &SolidSettings) -> EnrichedFront<3> {
     let wanted = settings.collocation.front_reach * least;
     // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
     let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
-    EnrichedFront { line, reach: wanted.min((BEND / bend).max(LEAST_REACH * wanted)) }
+    EnrichedFront { line, reach: wanted.min((BEND / bend).max(LEAST_REACH * least)) }
 }
 
 fn frame(p: &FrontPoint) -> FrontFrame<3> {

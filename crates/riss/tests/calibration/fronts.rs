@@ -11,7 +11,7 @@ use riss::case::AnyCase;
 use std::f64::consts::PI;
 
 /// Every so many of the bodies is in an ordinary run.
-const STRIDE: usize = 13;
+const STRIDE: usize = 17;
 /// Node spacing at the front over its least radius of curvature, or the length of the crack.
 const SPACINGS: [f64; 3] = [0.16, 0.12, 0.09];
 /// Half width of the block around an ellipse, over its larger radius.
@@ -81,7 +81,7 @@ fn ellipse(number: usize, random: &mut Random, spacing: f64) -> Body {
         "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = 1000, poisson = {poisson} }}\n\
          geometry.box = {{ lower = [-{BLOCK}, -{BLOCK}, -{BLOCK}], upper = [{BLOCK}, {BLOCK}, {BLOCK}] }}\n\
          remote_stress = {{ xx = {xx}, yy = {yy}, zz = {zz}, xy = {xy}, yz = {yz}, xz = {xz} }}\n\
-         nodes = {{ spacing = 2.5, front_spacing = {}, growth = 0.2 }}\nfracture.points = 8\n\
+         nodes = {{ spacing = 2.5, front_spacing = {} }}\nfracture.points = 8\n\
          crack = [{{ ellipse = {{ center = [0, 0, 0], normal = [0, 0, 1], axis = [1, 0, 0], radii = [1, {b}] }} }}]",
         spacing * b * b
     );
@@ -129,7 +129,7 @@ fn slab(number: usize, random: &mut Random, spacing: f64) -> Body {
          geometry.box = {{ lower = [0, 0, -{half}], upper = [1, {thickness}, {half}] }}\n\
          support = [{{ on = ['y-min', 'y-max'], normal = 0 }}]\n\
          load = [{{ on = 'z-max', traction = [0, 0, 1] }}, {{ on = 'z-min', traction = [0, 0, -1] }}]\n\
-         nodes = {{ spacing = 0.25, front_spacing = {}, growth = 0.2 }}\nfracture.points = 4\n\
+         nodes = {{ spacing = 0.1, front_spacing = {} }}\nfracture.points = 4\n\
          crack = [{{ polygon = [[{from}, 0, 0], [{to}, 0, 0], [{to}, {thickness}, 0], [{from}, {thickness}, 0]] }}]",
         spacing * half_length
     );

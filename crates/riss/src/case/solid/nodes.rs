@@ -19,7 +19,7 @@ const LEAST_FRACTION: f64 = 1.0 / 250.0;
 /// Fronts that turn by more at a point have a corner there, and no radius [rad].
 const CORNER: f64 = 0.4;
 /// Growth of the spacing, if the case says none.
-const GROWTH: f64 = 0.2;
+const GROWTH: f64 = 0.15;
 /// Least spacing over the size of the body; below it positions have too few digits left.
 const LEAST_SPACING: f64 = 1e-6;
 

@@ -348,7 +348,7 @@ pub(in crate::case) struct SolidNodes {
     pub spacing: Option<f64>,
     /// Node spacing at crack fronts [length].
     pub front_spacing: Option<f64>,
-    /// Growth of the spacing with distance from where it is smaller, 0.2 if not given.
+    /// Growth of the spacing with distance from where it is smaller, 0.15 if not given.
     #[schemars(range(min = 0.02, max = 0.5))]
     pub growth: Option<f64>,
     /// Where nodes stand closer.
