@@ -3,11 +3,13 @@
 //! A crack is a mesh in the body; its fronts are the edges of the rim that do not lie on the boundary. [`strip`] puts a
 //! strip of triangles ahead of each front, past the boundary where it has to, and [`clip`] cuts off what leaves the
 //! body: ends of fronts slide on the boundary, and what reaches it is front no more. [`join`] closes the gap between
-//! fronts that meet, [`contact`] finds strips that run into the crack. Old triangles stay where they are; only what is new is added.
+//! fronts that meet, [`contact`] finds strips that run into the crack, [`smooth`] rounds
+//! the fronts for others. Old triangles stay where they are; only what is new is added.
 
 mod clip;
 mod contact;
 mod join;
+mod smooth;
 mod strip;
 #[cfg(test)]
 mod tests;
@@ -242,13 +244,15 @@ impl GrowingCrack {
         self.triangles.iter().map(|t| 0.5 * area_vector(t.map(|v| self.vertices[v as usize])).norm()).sum()
     }
 
-    /// The shape, for [`super::CrackSurface::new`].
+    /// Its triangles.
+    pub fn mesh(&self) -> TriangleMesh {
+        mesh_of(self.vertices.clone(), self.triangles.clone())
+    }
+
+    /// The shape with smooth fronts, for [`super::CrackSurface::new`].
     pub fn shape(&self) -> CrackShape {
-        let mut mesh =
-            TriangleMesh { vertices: self.vertices.clone(), triangles: self.triangles.clone(), ..Default::default() };
-        let part = mesh.add_part("crack", Shape::Triangles);
-        mesh.part_of = vec![part; self.triangles.len()];
-        CrackShape::Triangles(mesh)
+        let (vertices, triangles) = smooth::smoothed(self);
+        CrackShape::Triangles(mesh_of(vertices, triangles))
     }
 
     /// Two cracks as one with the steps of its fronts, if their fronts face each other in one plane and would meet;
@@ -356,4 +360,10 @@ impl GrowingCrack {
         let positions: Vec<Vector3> = vertices.iter().map(|v| self.vertices[*v as usize]).collect();
         GrowingFront { vertices, line: CrackFront::new(&positions, &normals, is_closed) }
     }
+}
+
+fn mesh_of(vertices: Vec<Vector3>, triangles: Vec<[u32; 3]>) -> TriangleMesh {
+    let mut mesh = TriangleMesh { part_of: vec![0; triangles.len()], vertices, triangles, parts: vec![] };
+    mesh.add_part("crack", Shape::Triangles);
+    mesh
 }

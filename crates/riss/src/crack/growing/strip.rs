@@ -1,5 +1,6 @@
 //! Strips of triangles between a front and where it moves to.
 
+use super::smooth::bend;
 use super::{EdgeLimits, FrontStep, GrowingFront};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::surface::Surface;
@@ -15,8 +16,6 @@ const BEYOND: f64 = 0.25;
 const STANDOFF: f64 = 0.5;
 /// How far strips are carried on past the ends of a front, over the longest edge and the step.
 pub(super) const PAST_END: f64 = 2.0;
-/// Tangents within this cosine of a new edge bend it.
-const ALONG: f64 = 0.7;
 
 /// The strips of all fronts of a crack.
 pub(super) struct Strips<'a> {
@@ -184,18 +183,14 @@ impl<'a> Strips<'a> {
         let mut refined = vec![line[0]];
         for w in line.windows(2) {
             let chord = w[1].at - w[0].at;
-            let length = chord.norm();
-            let pieces = (length / self.limits.longest).ceil().max(1.0) as usize;
-            let is_along =
-                |p: &NewPoint| p.stays.is_none() && p.tangent.is_some_and(|t| t.dot(&chord) > ALONG * length);
-            let bends = is_along(&w[0]) && is_along(&w[1]);
-            let tangents = [0, 1].map(|k| w[k].tangent.filter(|_| bends).map_or(chord, |t| t * length));
+            let pieces = (chord.norm() / self.limits.longest).ceil().max(1.0) as usize;
+            let is_moved = w.iter().all(|p| p.stays.is_none());
+            let tangents = w[0].tangent.zip(w[1].tangent).filter(|_| is_moved);
             for j in 1..pieces {
                 let s = j as f64 / pieces as f64;
                 let mix = |a: Vector3, b: Vector3| a * (1.0 - s) + b * s;
-                let bend =
-                    (tangents[0] - chord) * (s * (1.0 - s).powi(2)) - (tangents[1] - chord) * (s * s * (1.0 - s));
-                let at = mix(w[0].at, w[1].at) + bend;
+                let off = tangents.map_or_else(Vector3::zeros, |(a, b)| bend(chord, [a, b], s));
+                let at = mix(w[0].at, w[1].at) + off;
                 refined.push(NewPoint { at, from: mix(w[0].from, w[1].from), tangent: None, stays: None });
             }
             refined.push(w[1]);

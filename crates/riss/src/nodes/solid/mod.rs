@@ -23,7 +23,7 @@ use crate::geometry::surface::Surface;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sites::Sites;
-pub use spacing::{Region, SolidSpacing};
+pub use spacing::{Region, SolidSpacing, SpacingPlan};
 
 /// Least distance of two nodes over the mean of their spacings.
 pub const CLOSENESS: f64 = 0.8;
