@@ -8,11 +8,14 @@ use crate::resume::{self, Obstacle};
 use crate::run::RunArguments;
 use crate::sweep::{MOST_RUNS, combinations};
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, solid_grow};
 use riss::analysis::{RunSize, linear_static, solid_static};
 use riss::case::{AnyCase, Case, SolidCase};
 use riss::output::run_table::{RowStatus, RunRow, end_name, fronts, keys, table_csv, tips};
-use riss::output::{Results, RunInfo, RunStatus, SolidResults, read_results, write_file, write_solid_results};
+use riss::output::{
+    Results, RunInfo, RunStatus, SolidResults, read_results, solid_files::read_solid_results, write_file,
+    write_solid_results,
+};
 use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -195,6 +198,11 @@ fn run_plane(case: &Case, folder: &Path) -> Result<Results, String> {
 
 fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
     let mut progress = Progress::new(true);
+    if let Some(growth) = &case.growth {
+        let (writer, state) = solid_grow::begin(case, folder)?;
+        solid_grow::follow(case, growth, writer, state, progress, Speech::Nothing)?;
+        return read_solid_results(folder).ok_or_else(|| "the results cannot be read".into());
+    }
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();
     let result = outcome.map_err(|e| e.to_string())?;

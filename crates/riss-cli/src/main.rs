@@ -34,6 +34,7 @@ mod schema;
 mod selftest;
 mod shape;
 mod solid;
+mod solid_grow;
 mod sweep;
 mod table;
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The case as the run began with it, in the folder of results.
-const CASE_COPY: &str = "restart/case.json";
+pub const CASE_COPY: &str = "restart/case.json";
 
 /// Why a run does not begin.
 pub enum Obstacle {
@@ -34,7 +34,7 @@ pub struct Resumed {
     /// The case file.
     pub case: PathBuf,
     /// Its text then.
-    text: String,
+    pub text: String,
     /// The overrides.
     pub overrides: Vec<String>,
 }

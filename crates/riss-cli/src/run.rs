@@ -100,9 +100,12 @@ fn run_one(arguments: &RunArguments) -> u8 {
     let path = arguments.cases.first().cloned().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
     let case = match AnyCase::read(&path, &overrides) {
         Ok(AnyCase::Plane(case)) => *case,
-        Ok(AnyCase::Solid(_)) if arguments.resume.is_some() => return refuse("a solid has no growth to go on with"),
+        Ok(AnyCase::Solid(case)) if arguments.resume.is_some() && case.growth.is_none() => {
+            return refuse("the case has no [growth]: there is nothing to go on with");
+        }
         Ok(AnyCase::Solid(case)) => {
-            let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&path));
+            let dir = arguments.resume.as_ref().or(arguments.out.as_ref()).cloned();
+            let dir = dir.unwrap_or_else(|| results::default_folder(&path));
             return solid::run(arguments, &case, &dir);
         }
         Err(errors) => {

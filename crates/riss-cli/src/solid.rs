@@ -1,10 +1,11 @@
 //! `riss run` and `riss check` of solids.
 
 use crate::claim::Claim;
+use crate::grow::Speech;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::number;
-use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, log, results};
+use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, interrupt, log, results, solid_grow};
 use riss::analysis::{FrontRecord, RunSize, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
 use riss::output::whole_file::write_whole;
@@ -31,6 +32,11 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
         Err(e) => return cannot_write("the results", dir, &e),
     };
     let mut progress = Progress::new(arguments.quiet || arguments.log.is_on_terminal());
+    if let Some(growth) = &case.growth {
+        interrupt::listen();
+        let speech = if arguments.json { Speech::Json } else { Speech::Table };
+        return solid_grow::grow(arguments, case, growth, dir, progress, speech);
+    }
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();
     let result = match outcome {

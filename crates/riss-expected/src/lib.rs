@@ -32,6 +32,7 @@
 //!
 //! Solids have `fronts`: without `take`, a reference holds along all fronts of the crack; `"take": "greatest"`, `"least"`
 //! or `"mean"` picks one value, and `"at": [x, y, z]` that of the evaluated point there. `largest_principal_stress` is that at a node.
+//! Where cracks grow, all this is of the last step, and so is `crack_area`.
 //!
 //! ```json
 //! {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 const TIP_QUANTITIES: [&str; 7] = ["K_I", "K_II", "K_I_direct", "K_II_direct", "J", "T", "kink_angle_deg"];
 const FRONT_QUANTITIES: [&str; 5] = ["K_I", "K_II", "K_III", "T", "J"];
-const SCALARS: [&str; 2] = ["strain_energy", "energy_error"];
+const SCALARS: [&str; 3] = ["strain_energy", "energy_error", "crack_area"];
 
 type Object = Map<String, Value>;
 

@@ -1,6 +1,7 @@
 //! What an analysis reports.
 
 use super::crack_growth::GrowthState;
+use super::solid_growth::{SolidGrowthState, SolidStep};
 use super::warnings::Warning;
 use crate::crack::{End, EndKind, TipFrame};
 use crate::math::{Matrix2, Vector2};
@@ -53,6 +54,10 @@ pub trait Observer {
     }
     /// A step is complete. A break ends the analysis there.
     fn step(&mut self, _result: &StaticResult, _state: Option<&GrowthState>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// A step of growth in a solid is complete; `state` is the one that it began with. A break ends the analysis there.
+    fn solid_step(&mut self, _step: &SolidStep, _state: &SolidGrowthState) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }

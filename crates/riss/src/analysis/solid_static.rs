@@ -5,16 +5,18 @@ use super::solid_error_bars::{crack_length, widen_front_bars};
 use super::solid_guard_rails::inspect;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
 use super::warnings::Warnings;
-use crate::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
+use crate::approximation::{EnrichedFront, FitBuffer, FrontEnds, FrontFrame, FrontLine, ShapeFunctions};
 use crate::crack::{CrackFront, FrontPoint};
 use crate::error::Result;
 use crate::fracture::{FrontFactors, front_integrals};
 use crate::geometry::obstacles::{Opaque, OpaqueTriangles};
-use crate::math::Matrix;
+use crate::material::Elasticity;
+use crate::math::{Matrix, Vector3};
 use crate::model::SolidModel;
 use crate::nodes::cloud::Cloud;
 use crate::nodes::solid::{FacePair, NodesOnFronts, SolidCloud, SolidSpacing, generate_solid, solid_obstacles};
-use crate::system::{Collocation, CollocationSettings};
+use crate::system::{Collocation, CollocationSettings, CollocationSolution};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -69,68 +71,116 @@ pub fn solid_collocation(
 /// # Errors
 /// Those of node generation, shape functions and solver.
 pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut dyn Observer) -> Result<SolidResult> {
-    observer.stage(Stage::Nodes);
-    let nodes = solid_nodes(model, settings)?;
-    let obstacles = Arc::new(solid_obstacles(&model.body, &model.cracks));
-    observer.stage(Stage::Discretization);
-    let collocation = solid_collocation(model, &nodes, obstacles.clone(), settings);
-    observer.stage(Stage::Assembly);
-    let system = collocation.assemble()?;
-    observer.stage(Stage::Solve);
-    let solution = collocation.solve(&system)?;
-    drop(system);
-    observer.stage(Stage::Fracture);
-    let mut records = vec![];
-    for (crack, surface) in model.cracks.iter().enumerate() {
-        for front in &surface.fronts {
-            let points = stations(front, settings.points_on_front);
-            let evaluate = |p: &FrontPoint| {
-                let h = settings.spacing.at(p.position);
-                let largest = free_disc(model, &obstacles, crack, p, h);
-                let factors = match largest {
-                    None => None,
-                    Some(r) => {
-                        let radii = DISCS.map(|share| share * r);
-                        let frame = frame(p);
-                        let displacements = &solution.displacements;
-                        let discs = front_integrals(&collocation, displacements, &frame, crack, &radii)?;
-                        let mut factors = FrontFactors::of(&discs);
-                        let open = if front.is_closed { 0.0 } else { h / crack_length(surface, false) };
-                        let shares = [h * p.curvature.abs(), open];
-                        widen_front_bars(&mut factors, &model.solid.material, shares, r);
-                        Some(factors)
-                    }
-                };
-                Ok(FrontPointRecord { point: *p, factors, radius: largest })
-            };
-            let points = points.iter().map(evaluate).collect::<Result<Vec<_>>>()?;
-            records.push(FrontRecord { crack, is_closed: front.is_closed, length: front.length, points });
-        }
+    Solved::of(model, settings, observer)?.result(model, settings, observer)
+}
+
+/// A solution with what it takes to evaluate it anywhere.
+pub(super) struct Solved {
+    nodes: SolidCloud,
+    obstacles: Arc<OpaqueTriangles>,
+    collocation: Collocation<3>,
+    solution: CollocationSolution<3>,
+}
+
+impl Solved {
+    /// Solves a cracked solid.
+    pub fn of(model: &SolidModel, settings: &SolidSettings, observer: &mut dyn Observer) -> Result<Self> {
+        observer.stage(Stage::Nodes);
+        let nodes = solid_nodes(model, settings)?;
+        let obstacles = Arc::new(solid_obstacles(&model.body, &model.cracks));
+        observer.stage(Stage::Discretization);
+        let collocation = solid_collocation(model, &nodes, obstacles.clone(), settings);
+        observer.stage(Stage::Assembly);
+        let system = collocation.assemble()?;
+        observer.stage(Stage::Solve);
+        let solution = collocation.solve(&system)?;
+        Ok(Self { nodes, obstacles, collocation, solution })
     }
-    observer.stage(Stage::Fields);
-    let gradients = collocation.gradients(&solution.displacements)?;
-    let material = model.solid.material;
-    let stress = |g: &Matrix<3>| {
-        (g + g.transpose()) * material.shear() + Matrix::from_diagonal_element(material.lame() * g.trace())
-    };
-    let cloud: Cloud<3> = collocation.cloud().clone();
-    let pairs = renumbered(&nodes.pairs, &collocation.origins, nodes.cloud.len());
-    let mut result = SolidResult {
-        n_nodes: cloud.len(),
-        stresses: gradients.iter().map(stress).collect(),
-        displacements: solution.displacements,
-        cloud,
-        pairs,
-        opened_cracks: vec![],
-        fronts: records,
-        effort: solution.effort,
-        warnings: vec![],
-    };
-    result.opened_cracks = (0..model.cracks.len()).map(|c| result.opened_crack(&model.cracks[c], c)).collect();
-    let mut warnings = Warnings::new(observer);
-    inspect(model, settings, &result, &mut warnings);
-    result.warnings = warnings.list;
-    Ok(result)
+
+    /// Whether nothing hides two points from each other.
+    pub fn visible(&self, p: Vector3, q: Vector3) -> bool {
+        self.obstacles.visible(p, q)
+    }
+
+    /// Stresses at points in the body that are on no surface [stress].
+    pub fn stresses_at(&self, points: &[Vector3]) -> Result<Vec<Matrix<3>>> {
+        let one = |(fit, shape): &mut (FitBuffer<3>, ShapeFunctions<3>), p: &Vector3| {
+            self.collocation.approximation.at_point(*p, *p, fit, shape)?;
+            let term =
+                |(k, i): (usize, &u32)| self.solution.displacements[*i as usize] * shape.gradients[k].transpose();
+            let gradient: Matrix<3> = shape.neighbors.iter().enumerate().map(term).sum();
+            Ok(stress(&self.collocation.solid.material, &gradient))
+        };
+        points.par_iter().map_init(Default::default, one).collect()
+    }
+
+    /// Evaluates the fronts.
+    fn fronts(&self, model: &SolidModel, settings: &SolidSettings) -> Result<Vec<FrontRecord>> {
+        let mut records = vec![];
+        for (crack, surface) in model.cracks.iter().enumerate() {
+            for front in &surface.fronts {
+                let evaluate = |p: &FrontPoint| {
+                    let h = settings.spacing.at(p.position);
+                    let largest = free_disc(model, &self.obstacles, crack, p, h);
+                    let factors = match largest {
+                        None => None,
+                        Some(r) => {
+                            let radii = DISCS.map(|share| share * r);
+                            let displacements = &self.solution.displacements;
+                            let frame = frame(p);
+                            let discs = front_integrals(&self.collocation, displacements, &frame, crack, &radii)?;
+                            let mut factors = FrontFactors::of(&discs);
+                            let open = if front.is_closed { 0.0 } else { h / crack_length(surface, false) };
+                            let shares = [h * p.curvature.abs(), open];
+                            widen_front_bars(&mut factors, &model.solid.material, shares, r);
+                            Some(factors)
+                        }
+                    };
+                    Ok(FrontPointRecord { point: *p, factors, radius: largest })
+                };
+                let points = stations(front, settings.points_on_front);
+                let points = points.iter().map(evaluate).collect::<Result<Vec<_>>>()?;
+                records.push(FrontRecord { crack, is_closed: front.is_closed, length: front.length, points });
+            }
+        }
+        Ok(records)
+    }
+
+    /// Evaluates fronts and nodes.
+    pub fn result(
+        self,
+        model: &SolidModel,
+        settings: &SolidSettings,
+        observer: &mut dyn Observer,
+    ) -> Result<SolidResult> {
+        observer.stage(Stage::Fracture);
+        let fronts = self.fronts(model, settings)?;
+        observer.stage(Stage::Fields);
+        let gradients = self.collocation.gradients(&self.solution.displacements)?;
+        let cloud: Cloud<3> = self.collocation.cloud().clone();
+        let pairs = renumbered(&self.nodes.pairs, &self.collocation.origins, self.nodes.cloud.len());
+        let mut result = SolidResult {
+            n_nodes: cloud.len(),
+            stresses: gradients.iter().map(|g| stress(&model.solid.material, g)).collect(),
+            displacements: self.solution.displacements,
+            cloud,
+            pairs,
+            opened_cracks: vec![],
+            fronts,
+            effort: self.solution.effort,
+            warnings: vec![],
+        };
+        result.opened_cracks = (0..model.cracks.len()).map(|c| result.opened_crack(&model.cracks[c], c)).collect();
+        let mut warnings = Warnings::new(observer);
+        inspect(model, settings, &result, &mut warnings);
+        result.warnings = warnings.list;
+        Ok(result)
+    }
+}
+
+fn stress(material: &Elasticity, gradient: &Matrix<3>) -> Matrix<3> {
+    (gradient + gradient.transpose()) * material.shear()
+        + Matrix::from_diagonal_element(material.lame() * gradient.trace())
 }
 
 /// A front with its axes, for the functions of the front near it.

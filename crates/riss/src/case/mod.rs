@@ -117,12 +117,7 @@ impl Case {
 
     /// The first top-level key, apart from `files`, `growth`, `output` and `title`, in which another case says something else.
     pub fn differs_outside_growth(&self, other: &Self) -> Option<String> {
-        let tree = |case: &Self| Document::parse(&case.text, &case.overrides, &mut vec![]).to_toml();
-        let (mine, yours) = (tree(self), tree(other));
-        let mut keys: Vec<&String> = mine.keys().chain(yours.keys()).collect();
-        keys.sort();
-        let may_change = |key: &str| ["files", "growth", "output", "title"].contains(&key);
-        keys.into_iter().find(|k| !may_change(k) && mine.get(*k) != yours.get(*k)).cloned()
+        differing_key([(&self.text, &self.overrides), (&other.text, &other.overrides)])
     }
 
     /// Where a note stands, such as `case.toml:3:9`.
@@ -137,6 +132,15 @@ impl Case {
         document.locate(&mut problem);
         self.place(&problem)
     }
+}
+
+/// The first key in which two cases with their overrides differ, besides those that may change within a run.
+fn differing_key(cases: [(&String, &Vec<String>); 2]) -> Option<String> {
+    let [mine, yours] = cases.map(|(text, overrides)| Document::parse(text, overrides, &mut vec![]).to_toml());
+    let mut keys: Vec<&String> = mine.keys().chain(yours.keys()).collect();
+    keys.sort();
+    let may_change = |key: &str| ["files", "growth", "output", "title"].contains(&key);
+    keys.into_iter().find(|k| !may_change(k) && mine.get(*k) != yours.get(*k)).cloned()
 }
 
 /// The JSON Schema of the case file.

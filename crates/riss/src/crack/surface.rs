@@ -9,7 +9,7 @@ use crate::math::Vector3;
 use rustc_hash::FxHashSet;
 
 /// Angle between normals from which an edge of a crack surface is sharp [rad].
-const FEATURE_ANGLE: f64 = 0.5;
+pub(super) const FEATURE_ANGLE: f64 = 0.5;
 /// A rim nearer to the boundary than this share of the body's size lies on it.
 const ON_BOUNDARY: f64 = 1e-6;
 /// The same over the radius of a round boundary, whose triangles are inscribed.
@@ -56,7 +56,7 @@ pub struct MouthPiece {
 
 /// What a place of the rim is to the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Position {
+pub(super) enum Position {
     Inside,
     OnBoundary,
     Outside,
@@ -171,7 +171,8 @@ fn pass_straight_out(pieces: &mut [RimPiece], body: &Surface) {
     }
 }
 
-fn position(body: &Surface, p: Vector3) -> Position {
+/// What a place is to the body.
+pub(super) fn position(body: &Surface, p: Vector3) -> Position {
     let foot = body.closest(p);
     if foot.distance <= tolerance(body, &foot) {
         Position::OnBoundary

@@ -4,7 +4,7 @@
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
-//! [`solid_report`], [`solid_picture()`].
+//! [`solid_writer`] (step by step), [`solid_report`], [`solid_picture()`].
 
 mod color_map;
 pub mod comparison;
@@ -24,6 +24,7 @@ pub mod solid_files;
 pub mod solid_picture;
 pub mod solid_report;
 pub mod solid_results;
+pub mod solid_writer;
 mod svg;
 mod vtk;
 pub mod whole_file;
@@ -39,6 +40,7 @@ pub use shape_picture::write_shape_pictures;
 pub use solid_files::{write_solid_cloud, write_solid_results};
 pub use solid_picture::solid_picture;
 pub use solid_results::{SolidResults, solid_results_schema};
+pub use solid_writer::{SolidWriter, solid_restart_state};
 
 use crate::analysis::StaticResult;
 use crate::model::UnitNames;

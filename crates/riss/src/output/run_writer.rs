@@ -176,7 +176,7 @@ pub fn read_results(dir: &Path) -> io::Result<Results> {
     Ok(serde_json::from_slice(&fs::read(dir.join(RESULTS_FILE))?)?)
 }
 
-fn restart_name(step: usize) -> String {
+pub(super) fn restart_name(step: usize) -> String {
     format!("{RESTART_FOLDER}/step_{step:04}.json")
 }
 

@@ -90,7 +90,7 @@ fn places(cloud: &Cloud<3>) -> Vec<Array> {
     ]
 }
 
-fn nodes(result: &SolidResult) -> Vec<u8> {
+pub(super) fn nodes(result: &SolidResult) -> Vec<u8> {
     let principal: Vec<[f64; 3]> = (0..result.n_nodes).map(|k| result.principal_stresses(k)).collect();
     let mut arrays = places(&result.cloud);
     arrays.push(Array::spatial_vectors("displacement", result.displacements.iter().copied()));
@@ -105,7 +105,7 @@ fn von_mises(stress: &Matrix<3>) -> f64 {
     (1.5 * deviator.norm_squared()).sqrt()
 }
 
-fn cracks(result: &SolidResult) -> Vec<u8> {
+pub(super) fn cracks(result: &SolidResult) -> Vec<u8> {
     let (mut positions, mut openings, mut gaps) = (vec![], vec![], vec![]);
     let mut cells = Cells { cell_type: CellType::Triangle, points: vec![], sizes: vec![] };
     let mut index = vec![];

@@ -53,6 +53,7 @@ pub fn solid_report(results: &SolidResults) -> String {
         html(&summary(results))
     );
     push_warnings(&mut page, results);
+    push_growth(&mut page, results);
     for (index, front) in results.fronts.iter().enumerate() {
         push_front(&mut page, index, front);
     }
@@ -78,6 +79,27 @@ fn push_warnings(page: &mut String, results: &SolidResults) {
     page.push_str("<section>\n<h2>Warnings</h2>\n<ul>\n");
     results.warnings.iter().for_each(|w| page.push_str(&format!("<li>{}\n", html(w))));
     page.push_str("</ul>\n</section>\n");
+}
+
+fn push_growth(page: &mut String, results: &SolidResults) {
+    if results.steps.is_empty() {
+        return;
+    }
+    page.push_str("<section>\n<h2>Growth</h2>\n<div class=\"scroll\"><table>\n");
+    page.push_str("<tr><th>step<th>nodes<th>crack area<th>load factor<th>front vertices<th>moving");
+    for step in &results.steps {
+        let area = step.cracks.iter().map(|c| c.area).sum();
+        let counts = [step.front_vertices, step.moving_vertices].map(|n| n.to_string());
+        let [vertices, moving] = counts;
+        let cells =
+            [step.step.to_string(), step.nodes.to_string(), cell(area), cell(step.load_factor), vertices, moving];
+        push_row(page, &cells);
+    }
+    page.push_str("\n</table></div>\n");
+    if let Some(end) = &results.growth_end {
+        page.push_str(&format!("<p>Growth ended: {}</p>\n", html(&end.reason)));
+    }
+    page.push_str("</section>\n");
 }
 
 fn push_front(page: &mut String, index: usize, front: &FrontResults) {

@@ -3,7 +3,7 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::{RunInfo, RunStatus};
-use crate::analysis::{FrontPointRecord, SolidResult};
+use crate::analysis::{FrontPointRecord, FrontRecord, GrowthEnd, SolidResult, SolidStep};
 use crate::model::SolidModel;
 use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
@@ -43,8 +43,66 @@ pub struct SolidResults {
     pub stress: StressResults,
     /// Every crack, in the order of the case.
     pub cracks: Vec<SolidCrackResults>,
-    /// Every front: pieces of the rim of a crack inside the body.
+    /// Every front: pieces of the rim of a crack inside the body; where cracks grow, those of the last step.
     pub fronts: Vec<FrontResults>,
+    /// Area of all cracks in the body in the last step [area], where they grow.
+    #[serde(default)]
+    pub crack_area: Option<f64>,
+    /// Why crack growth ended, where it did.
+    #[serde(default)]
+    pub growth_end: Option<GrowthEnd>,
+    /// Steps of growth in order; none without.
+    #[serde(default)]
+    pub steps: Vec<SolidStepResults>,
+}
+
+/// A step of growth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidStepResults {
+    /// Number of the step, from 0.
+    pub step: usize,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Factor on the loads at which the tensile strength is reached somewhere ahead of the fronts.
+    pub load_factor: Option<f64>,
+    /// Number of vertices of all fronts.
+    pub front_vertices: usize,
+    /// Number of those that move to the next step.
+    pub moving_vertices: usize,
+    /// Every crack.
+    pub cracks: Vec<SolidStepCrack>,
+    /// Every front.
+    pub fronts: Vec<FrontResults>,
+    /// What deserves a second look in this step.
+    pub warnings: Vec<String>,
+}
+
+/// A crack in a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidStepCrack {
+    /// Its name; that of the first of those that joined.
+    pub name: String,
+    /// Its area in the body [area].
+    pub area: Option<f64>,
+}
+
+impl SolidStepResults {
+    /// The results of a step.
+    pub fn new(step: &SolidStep) -> Self {
+        let crack = |(name, area): (&String, &f64)| SolidStepCrack { name: name.clone(), area: finite(*area) };
+        Self {
+            step: step.step,
+            nodes: step.result.n_nodes,
+            load_factor: step.load_factor.and_then(finite),
+            front_vertices: step.n_vertices,
+            moving_vertices: step.n_moving,
+            cracks: step.model.crack_names.iter().zip(&step.areas).map(crack).collect(),
+            fronts: fronts(&step.model, &step.result),
+            warnings: step.result.warnings.iter().map(ToString::to_string).collect(),
+        }
+    }
 }
 
 /// What the linear solver did.
@@ -150,12 +208,6 @@ impl SolidResults {
         for (stage, time) in &info.stage_time_s {
             *stage_time_s.entry(stage.clone()).or_insert(0.0) += time;
         }
-        let fronts = result.fronts.iter().map(|front| FrontResults {
-            crack: model.crack_names[front.crack].clone(),
-            closed: front.is_closed,
-            length: finite(front.length),
-            points: front.points.iter().map(point).collect(),
-        });
         let cracks = model.crack_names.iter().zip(&result.opened_cracks).map(|(name, opened)| SolidCrackResults {
             name: name.clone(),
             largest_opening: opened.gaps.iter().copied().reduce(f64::max).and_then(finite),
@@ -181,9 +233,28 @@ impl SolidResults {
             files,
             stress: stress(result),
             cracks: cracks.collect(),
-            fronts: fronts.collect(),
+            fronts: fronts(model, result),
+            crack_area: None,
+            growth_end: None,
+            steps: vec![],
         }
     }
+
+    /// Adds how the cracks grew.
+    pub(super) fn grown(&mut self, steps: Vec<SolidStepResults>, end: Option<GrowthEnd>) {
+        self.crack_area = steps.last().and_then(|s| s.cracks.iter().map(|c| c.area).sum());
+        (self.growth_end, self.steps) = (end, steps);
+    }
+}
+
+fn fronts(model: &SolidModel, result: &SolidResult) -> Vec<FrontResults> {
+    let front = |front: &FrontRecord| FrontResults {
+        crack: model.crack_names[front.crack].clone(),
+        closed: front.is_closed,
+        length: finite(front.length),
+        points: front.points.iter().map(point).collect(),
+    };
+    result.fronts.iter().map(front).collect()
 }
 
 fn stress(result: &SolidResult) -> StressResults {

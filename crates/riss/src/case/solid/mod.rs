@@ -1,10 +1,12 @@
 //! Cases of solids: `method = "collocation"`.
 //!
-//! Reading order: [`schema`] (what may be written), [`body`] and [`stl`] (geometry), [`cracks`], [`conditions`], [`nodes`].
+//! Reading order: [`schema`] (what may be written), [`body`] and [`stl`] (geometry), [`cracks`], [`conditions`], [`nodes`],
+//! [`growth`].
 
 mod body;
 mod conditions;
 mod cracks;
+mod growth;
 mod nodes;
 pub(super) mod schema;
 mod stl;
@@ -16,7 +18,7 @@ use super::document::{Content, Document};
 use super::files::Files;
 use super::problem::{self, CaseErrors, Problem};
 use super::{Case, MAX_BYTES, read_text};
-use crate::analysis::SolidSettings;
+use crate::analysis::{SolidGrowthSettings, SolidSettings};
 use crate::material::{Elasticity, PlaneState};
 use crate::model::{RigidMotion, Solid, SolidModel};
 use crate::system::collocation::LARGEST_POISSON;
@@ -40,6 +42,8 @@ pub struct SolidCase {
     pub model: SolidModel,
     /// Numerical choices.
     pub settings: SolidSettings,
+    /// How its cracks grow, if they do.
+    pub growth: Option<SolidGrowthSettings>,
     /// The case file.
     pub path: PathBuf,
     /// Its text.
@@ -87,14 +91,20 @@ impl SolidCase {
         let document = Document::parse(text, overrides, &mut problems);
         let built = if problems.is_empty() { build(&document, path, &mut problems) } else { None };
         match built {
-            Some((model, settings, notes)) if problems.is_empty() => {
-                Ok(Self { model, settings, path: path.into(), text: text.into(), overrides: overrides.to_vec(), notes })
+            Some(Built { model, settings, growth, notes }) if problems.is_empty() => {
+                let (path, text, overrides) = (path.into(), text.into(), overrides.to_vec());
+                Ok(Self { model, settings, growth, path, text, overrides, notes })
             }
             _ => {
                 problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
                 Err(CaseErrors { file: path.into(), text: text.into(), overrides: overrides.to_vec(), problems })
             }
         }
+    }
+
+    /// The first key in which the cases differ, besides those of growth; see [`Case::differs_outside_growth`].
+    pub fn differs_outside_growth(&self, other: &Self) -> Option<String> {
+        super::differing_key([(&self.text, &self.overrides), (&other.text, &other.overrides)])
     }
 
     /// Where a note stands, such as `case.toml:3:9`.
@@ -116,11 +126,15 @@ pub fn solid_json_schema() -> serde_json::Value {
     schemars::schema_for!(SolidFile).to_value()
 }
 
-fn build(
-    document: &Document,
-    path: &Path,
-    problems: &mut Vec<Problem>,
-) -> Option<(SolidModel, SolidSettings, Vec<Problem>)> {
+/// What the file means.
+struct Built {
+    model: SolidModel,
+    settings: SolidSettings,
+    growth: Option<SolidGrowthSettings>,
+    notes: Vec<Problem>,
+}
+
+fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
     let faulty = super::check::check(document, &solid_json_schema(), problems);
     let file: SolidFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
     let files = Files::of(document, path);
@@ -160,7 +174,9 @@ fn build(
         yield_stress: file.material.yield_stress,
         solid,
     };
-    Some((model, settings?, report.notes))
+    let (settings, plan) = settings?;
+    let growth = growth::growth(&file, &model.body, plan, &mut report);
+    Some(Built { model, settings, growth, notes: report.notes })
 }
 
 /// Stand for required sections that are faulty.

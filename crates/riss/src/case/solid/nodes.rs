@@ -7,7 +7,7 @@ use crate::case::build::report::Report;
 use crate::crack::CrackSurface;
 use crate::geometry::surface::Surface;
 use crate::math::Vector3;
-use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SolidSpacing, estimated_solid_nodes, wall_regions};
+use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SpacingPlan, estimated_solid_nodes, wall_regions};
 
 /// Spacing over the cube root of the volume, if the case says none.
 const BODY_FRACTION: f64 = 1.0 / 20.0;
@@ -28,7 +28,7 @@ pub(super) fn settings(
     body: &Surface,
     cracks: &[CrackSurface],
     report: &mut Report,
-) -> Option<SolidSettings> {
+) -> Option<(SolidSettings, SpacingPlan)> {
     let nodes = &file.nodes;
     let size = body.bounds().size().norm();
     let mut sound = true;
@@ -48,33 +48,34 @@ pub(super) fn settings(
         return None;
     }
     let largest = nodes.spacing.unwrap_or_else(|| BODY_FRACTION * body.volume().cbrt());
-    let mut regions = wall_regions(body, largest);
-    for crack in cracks {
+    let at_front = |crack: &CrackSurface| {
         let extent = crack.surface.bounds().size().norm() / 2f64.sqrt();
         let by_size = (FRONT_FRACTION * extent).min(largest);
         let by_bend = (BEND_FRACTION * least_radius(crack)).max(LEAST_FRACTION * extent);
-        let h = nodes.front_spacing.unwrap_or(by_size.min(by_bend));
-        let pieces = crack.fronts.iter().flat_map(|f| f.segments().collect::<Vec<_>>());
-        regions.extend(pieces.map(|s| (Region::Segment(s), h)));
-    }
+        nodes.front_spacing.unwrap_or(by_size.min(by_bend))
+    };
+    let at_fronts: Vec<f64> = cracks.iter().map(at_front).collect();
+    let mut regions = wall_regions(body, largest);
     for (index, finer) in nodes.finer.iter().enumerate() {
         regions.extend(finer_regions(finer, &format!("nodes.finer[{index}]"), body, report)?);
     }
-    let smallest = regions.iter().map(|r| r.1).fold(largest, f64::min);
-    let regions = regions.into_iter().filter(|r| r.1 < largest).collect();
-    let spacing = SolidSpacing::new(largest, nodes.growth.unwrap_or(GROWTH), regions);
+    let with_front = cracks.iter().zip(&at_fronts).filter(|(c, _)| !c.fronts.is_empty()).map(|(_, h)| *h);
+    let smallest = regions.iter().map(|r| r.1).chain(with_front).fold(largest, f64::min);
+    let plan = SpacingPlan { largest, growth: nodes.growth.unwrap_or(GROWTH), at_fronts, regions };
+    let spacing = plan.spacing(cracks, &(0..cracks.len()).collect::<Vec<_>>());
     let n = estimated_solid_nodes(body, &spacing);
     if !(n <= MAX_SOLID_NODES as f64) {
         let message = format!("the spacing asks for about {n:.1e} nodes, smallest spacing {smallest:.3e}");
         report.error("nodes", message).allow(format!("up to {MAX_SOLID_NODES} nodes"));
         return None;
     }
-    Some(SolidSettings {
+    let settings = SolidSettings {
         spacing,
         nodes_on_fronts: nodes.on_fronts.unwrap_or(NodesOnFronts::Single),
         collocation: file.collocation,
         points_on_front: file.fracture.points,
-    })
+    };
+    Some((settings, plan))
 }
 
 /// Least radius of curvature of the fronts of a crack, corners left out [length].

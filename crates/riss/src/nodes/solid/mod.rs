@@ -24,7 +24,7 @@ use crate::geometry::surface::Surface;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sites::Sites;
-pub use spacing::{Region, SolidSpacing};
+pub use spacing::{Region, SolidSpacing, SpacingPlan};
 pub use walls::{thinnest_wall, wall_regions};
 
 /// Least distance of two nodes over the mean of their spacings.

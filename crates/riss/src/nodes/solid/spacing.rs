@@ -1,5 +1,6 @@
 //! How far apart nodes of a solid shall stand: smallest at crack fronts and in given regions, growing away from them.
 
+use crate::crack::CrackSurface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::triangle::{self, Triangle};
 use crate::math::Vector3;
@@ -54,6 +55,33 @@ impl Region {
             Self::Box(r) => *r,
             Self::Ball { center, radius } => Aabb::around(*center, Vector3::repeat(*radius)),
         }
+    }
+}
+
+/// What a spacing is made from, for cracks that change.
+#[derive(Clone, Debug)]
+pub struct SpacingPlan {
+    /// Spacing where nothing asks for less [length].
+    pub largest: f64,
+    /// Slope of the spacing with the distance from a region, in (0, 0.5].
+    pub growth: f64,
+    /// Spacing at the fronts of each crack [length].
+    pub at_fronts: Vec<f64>,
+    /// Other regions with the spacing that each asks for [length].
+    pub regions: Vec<(Region, f64)>,
+}
+
+impl SpacingPlan {
+    /// The spacing around cracks; `sources` tell whose spacing holds at the fronts of each.
+    pub fn spacing(&self, cracks: &[CrackSurface], sources: &[usize]) -> SolidSpacing {
+        let mut regions = vec![];
+        for (crack, source) in cracks.iter().zip(sources) {
+            let pieces = crack.fronts.iter().flat_map(|f| f.segments().collect::<Vec<_>>());
+            regions.extend(pieces.map(|s| (Region::Segment(s), self.at_fronts[*source])));
+        }
+        regions.extend(&self.regions);
+        regions.retain(|r| r.1 < self.largest);
+        SolidSpacing::new(self.largest, self.growth, regions)
     }
 }
 
