@@ -34,6 +34,7 @@ enum Failure {
     Analysis(riss::error::Error),
     Files(PathBuf, std::io::Error),
     Threads(String),
+    SolidGrowth,
     Stopped,
 }
 
@@ -121,6 +122,9 @@ fn listen<T: Send>(
         (None, Ok(Err(Failure::Analysis(e)))) => Err(error::of_analysis(&e)),
         (None, Ok(Err(Failure::Files(path, e)))) => Err(error::of_files(&path, &e)),
         (None, Ok(Err(Failure::Threads(e)))) => Err(error::AnalysisError::new_err(e)),
+        (None, Ok(Err(Failure::SolidGrowth))) => {
+            Err(error::AnalysisError::new_err("cracks of solids grow in the program alone: riss run; or take [growth] out"))
+        }
         (None, Ok(Err(Failure::Stopped))) => Err(error::AnalysisError::new_err("the run was stopped")),
         (None, Err(_)) => {
             Err(error::AnalysisError::new_err("this is a bug in riss, not in your case; please report it"))
@@ -188,6 +192,9 @@ fn solve_solid(
     send: Sender<Event>,
     stop: &AtomicBool,
 ) -> Result<Solid, Failure> {
+    if case.growth.is_some() {
+        return Err(Failure::SolidGrowth);
+    }
     let mut listener = SolidListener { send, clock: Clock::new() };
     let result = solid_static(&case.model, &case.settings, &mut listener).map_err(Failure::Analysis)?;
     listener.clock.begin(None);

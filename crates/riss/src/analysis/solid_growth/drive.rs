@@ -17,6 +17,11 @@ const ANGLES: [f64; 7] = [-1.2, -0.8, -0.4, 0.0, 0.4, 0.8, 1.2];
 /// From this far ahead, over the increment, places are looked at.
 const EYE: f64 = 0.02;
 
+/// Turns smaller than this are noise of the nodes, which would make the crack wavy: the front goes straight on [rad].
+const STEADY: f64 = 0.04;
+/// Ends of fronts look from this far inside the body, over the increment.
+const INSIDE: f64 = 0.1;
+
 /// The steps of all fronts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drive {
@@ -46,14 +51,21 @@ pub(super) fn by_strength(
         let mut of_crack = vec![];
         for front in crack.fronts() {
             let mut of_front = vec![];
-            for point in &front.line.points {
-                let mean = mean_ahead(model, solved, point, increment)?;
+            let n = front.line.points.len();
+            for (k, point) in front.line.points.iter().enumerate() {
+                let inward = match (front.line.is_closed, k) {
+                    (false, 0) => INSIDE * increment,
+                    (false, k) if k + 1 == n => -INSIDE * increment,
+                    _ => 0.0,
+                };
+                let from = FrontPoint { position: point.position + point.tangent * inward, ..*point };
+                let mean = mean_ahead(model, solved, &from, increment)?;
                 let step = mean.map_or_else(FrontStep::none, |stress| {
                     let principal = LargestPrincipal::of(&stress);
                     let ratio = principal.ratio(tensile_strength);
                     drive.largest = Some(drive.largest.map_or(ratio, |l| l.max(ratio)));
                     let length = if ratio >= 1.0 { increment } else { 0.0 };
-                    FrontStep { direction: principal.growth_direction(point), length }
+                    FrontStep { direction: steady(point, principal.growth_direction(point)), length }
                 });
                 of_front.push(step);
             }
@@ -62,6 +74,12 @@ pub(super) fn by_strength(
         drive.steps.push(of_crack);
     }
     Ok(drive)
+}
+
+/// The direction, or straight ahead if it is not clearly another.
+fn steady(point: &FrontPoint, direction: Vector3) -> Vector3 {
+    let turn = point.ahead.cross(&direction).norm().atan2(point.ahead.dot(&direction));
+    if turn < STEADY { point.ahead } else { direction }
 }
 
 /// Mean stress over half a disc ahead of a front point, as far as it is in sight; none if nothing is.
@@ -112,7 +130,7 @@ pub(super) fn by_factors(
         (Some(d), Some(largest)) if largest > 0.0 => {
             let angle = direction.kink_angle(d, &model.solid.material);
             FrontStep {
-                direction: point.ahead * angle.cos() + point.normal * angle.sin(),
+                direction: steady(point, point.ahead * angle.cos() + point.normal * angle.sin()),
                 length: increment * (equivalent(d) / largest).powf(exponent),
             }
         }

@@ -1,6 +1,5 @@
 use super::*;
 use crate::case::{AnyCase, SolidCase};
-use crate::math::Vector3;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
@@ -37,31 +36,31 @@ fn grow(case: &SolidCase) -> (Kept, GrowthEnd) {
 
 const PENNY: &str = "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 1000, poisson = 0.3 }\n\
     geometry.box = { lower = [-5, -5, -5], upper = [5, 5, 5] }\n\
-    nodes = { spacing = 1.5, front_spacing = 0.14, growth = 0.25 }\nfracture.points = 8\n";
+    nodes = { spacing = 2, front_spacing = 0.11, growth = 0.25 }\nfracture.points = 6\n";
 
 /// A circle stays one, with `K_I = 2 σ √(a/π)` at each radius [Sneddon1946].
 #[test]
 fn a_penny_in_tension_grows_as_a_circle() {
     let case = parse(&format!(
         "{PENNY}remote_stress.zz = 1\ncrack = [{{ disc = {{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }} }}]\n\
-         growth = {{ steps = 2, increment = 0.25, criterion.stress-intensity-factors = {{ exponent = 3 }} }}"
+         growth = {{ steps = 1, increment = 0.25, criterion.stress-intensity-factors = {{ exponent = 3 }} }}"
     ));
     let (kept, end) = grow(&case);
-    assert_eq!((end.kind, kept.steps.len()), (GrowthEndKind::StepsDone, 3));
+    assert_eq!((end.kind, kept.steps.len()), (GrowthEndKind::StepsDone, 2));
     for (n, (step, state)) in kept.steps.iter().zip(&kept.states).enumerate() {
         let radius = 1.0 + 0.25 * n as f64;
         for p in &state.cracks[0].fronts()[0].line.points {
-            assert!((p.position.norm() / radius - 1.0).abs() < 0.02, "{n}: {}", p.position);
+            assert!((p.position.norm() / radius - 1.0).abs() < 0.01, "{n}: {}", p.position);
         }
         let exact = 2.0 * (radius / PI).sqrt();
         for p in &step.result.fronts[0].points {
             let [k1, k2, k3] = p.factors.unwrap().factors;
             assert!(
-                (k1 / exact - 1.0).abs() < 0.04 && k2.abs() < 0.04 * exact && k3.abs() < 0.04 * exact,
+                (k1 / exact - 1.0).abs() < 0.02 && k2.abs() < 0.02 * exact && k3.abs() < 0.02 * exact,
                 "{n} {k1} {k2} {k3} {exact}"
             );
         }
-        assert!((step.areas[0] / (PI * radius * radius) - 1.0).abs() < 0.04);
+        assert!((step.areas[0] / (PI * radius * radius) - 1.0).abs() < 0.02);
     }
 }
 
@@ -72,27 +71,40 @@ fn growth_goes_on_from_any_step() {
         "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 1000, poisson = 0.2 }\n\
          geometry.box = { lower = [0, 0, -2], upper = [4, 1, 2] }\nnodes = { spacing = 0.5, front_spacing = 0.25 }\n\
          fracture.points = 3\nremote_stress.zz = 1\ncrack = [{ polygon = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]] }]\n\
-         growth = { steps = 3, increment = 0.4, criterion.largest-principal-stress = { tensile_strength = 0.5 } }",
+         growth = { steps = 2, increment = 0.4, criterion.largest-principal-stress = { tensile_strength = 0.5 } }",
     );
     let (through, _) = grow(&case);
     let mut first = Kept { last: 2, ..Kept::default() };
     let growth = case.growth.as_ref().unwrap();
     assert!(solid_growth(&case.model, &case.settings, growth, None, &mut first).unwrap().is_none());
-    let text = serde_json::to_string(&through.states[2]).unwrap();
+    let text = serde_json::to_string(&through.states[1]).unwrap();
     let mut second = Kept::default();
     let state = serde_json::from_str(&text).unwrap();
     solid_growth(&case.model, &case.settings, growth, Some(state), &mut second).unwrap();
-    assert_eq!(second.states, through.states[2..]);
-    for (a, b) in second.steps.iter().zip(&through.steps[2..]) {
+    assert_eq!(second.states, through.states[1..]);
+    for (a, b) in second.steps.iter().zip(&through.steps[1..]) {
         assert_eq!((&a.result.displacements, &a.areas), (&b.result.displacements, &b.areas));
     }
-    // The strip between its free sides stays in its plane, its load factor falls as the ligament does.
-    let factors: Vec<f64> = through.steps.iter().map(|s| s.load_factor.unwrap()).collect();
-    assert!(factors.windows(2).all(|w| w[1] < w[0]), "{factors:?}");
-    for (n, state) in through.states.iter().enumerate() {
-        let out = |p: &Vector3| p.z.abs() < 0.05 && p.x <= 1.0 + 0.4 * n as f64 + 1e-9;
-        assert!(state.cracks[0].vertices().iter().all(out));
-        assert!((state.cracks[0].area() - 1.0 - 0.4 * n as f64).abs() < 0.03);
+    assert!(through.steps.windows(2).all(|w| w[1].areas[0] > w[0].areas[0] && w[1].areas == w[0].areas_after));
+}
+
+/// The mean stress ahead of a penny in tension is the same all around, and sends the front straight on.
+#[test]
+fn the_strength_is_reached_all_around_a_penny() {
+    let case = parse(&format!(
+        "{PENNY}remote_stress.zz = 1\ncrack = [{{ disc = {{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }} }}]\n\
+         growth = {{ steps = 1, increment = 0.25, criterion.largest-principal-stress = {{ tensile_strength = 1 }} }}"
+    ));
+    let solved = Solved::of(&case.model, &case.settings, &mut super::super::record::Silent).unwrap();
+    let cracks = SolidGrowthState::first(&case.model).unwrap().cracks;
+    let of = |strength: f64| drive::by_strength(&case.model, &solved, &cracks, 0.25, strength).unwrap();
+    let most = of(1.0).largest.unwrap();
+    // Of the front field alone, the mean of K_I/√(2πr) over the places straight ahead would be 1.8.
+    assert!(most > 1.2 && most < 2.4, "{most}");
+    let (all, none) = (of(0.95 * most), of(1.001 * most));
+    assert_eq!((all.n_moving(), none.n_moving()), (cracks[0].fronts()[0].vertices.len(), 0));
+    for (step, p) in all.steps[0][0].iter().zip(&cracks[0].fronts()[0].line.points) {
+        assert_eq!((step.direction, step.length), (p.ahead, 0.25));
     }
 }
 

@@ -54,7 +54,6 @@ fn check(crack: &GrowingCrack, body: &Surface) {
     }
     // The way to nodes and results.
     let as_given = CrackSurface::new(&CrackShape::Triangles(crack.mesh()), body).unwrap();
-    assert!(CrackSurface::new(&crack.shape(), body).is_ok());
     let own: Vec<CrackFront> = crack.fronts().iter().map(|f| f.line.clone()).collect();
     for (fronts, others) in [(&own, &as_given.fronts), (&as_given.fronts, &own)] {
         let others: Vec<[Vector3; 2]> = others.iter().flat_map(|f| f.segments().collect::<Vec<_>>()).collect();
@@ -307,7 +306,7 @@ fn a_front_stops_at_another_crack() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(6), cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(6), cases: 10, ..ProptestConfig::default() })]
     /// Random directions, lengths and vertices that stay, in a block, a shaft and a block with a hole.
     #[test]
     fn any_growth_is_a_surface_in_the_body(
@@ -351,5 +350,6 @@ proptest! {
             prop_assert!(longest_edge(&grown) <= longest_edge(&crack).max(2.0 * limits.longest) + 1e-9);
             crack = grown;
         }
+        prop_assert!(CrackSurface::new(&crack.shape(), &body).is_ok());
     }
 }
