@@ -1,11 +1,12 @@
 //! `riss converge`.
 
 use crate::claim::Claim;
+use crate::memory::MemoryLimit;
 use crate::progress::Progress;
 use crate::table::{aligned, number};
 use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
 use clap::Args;
-use riss::analysis::{ConvergenceStudy, Limit, converge};
+use riss::analysis::{ConvergenceStudy, Limit, RunSize, Settings, converge};
 use riss::case::Case;
 use riss::crack::End;
 use riss::output::write_convergence;
@@ -28,6 +29,9 @@ pub struct ConvergeArguments {
     /// Overrides a key of the case, such as material.young=70e9; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<String>,
+    /// Refuses a study whose finest nodes need more memory, such as 12GB: `free` is what the machine has, `none` is no limit
+    #[arg(long, value_name = "SIZE", default_value = "free", value_parser = MemoryLimit::parse)]
+    pub memory_limit: MemoryLimit,
     /// Shows no progress and no notes
     #[arg(long, short)]
     pub quiet: bool,
@@ -56,6 +60,13 @@ pub fn run(arguments: &ConvergeArguments) -> u8 {
             return BAD_CASE;
         }
     };
+    let finest = factors.first().and_then(|f| case.settings.nodes.scaled(&case.model, *f));
+    let settings = finest.map(|nodes| Settings { nodes, ..case.settings.clone() });
+    let size = settings.map(|s| RunSize::of_plane(&case.model, &s, None));
+    if let Some(reason) = size.and_then(|s| arguments.memory_limit.refusal(&s)) {
+        crate::fail(&reason);
+        return BAD_CASE;
+    }
     let dir = arguments.out.clone().unwrap_or_else(|| results::default_folder(&arguments.case));
     let _claim = match Claim::of(&dir) {
         Ok(claim) => claim,

@@ -50,5 +50,9 @@ fn what_cannot_be_studied_is_said() {
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(reason), "{message}");
     }
+    let output = riss(&folder, &["converge", &case, "--factors", "0.05,1,2", "--memory-limit", "100MB"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("100 MB are allowed"), "{message}");
     assert_eq!(std::fs::read_dir(&folder).expect("there").count(), 0);
 }

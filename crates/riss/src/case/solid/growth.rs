@@ -5,9 +5,24 @@ use crate::analysis::{FrontCriterion, SolidGrowthSettings};
 use crate::case::build::report::Report;
 use crate::geometry::surface::Surface;
 use crate::nodes::solid::SpacingPlan;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// Least increment over the spacing of nodes at a front: new faces need nodes.
 const LEAST: f64 = 1.0;
+
+/// How cracks grow, step by step.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(in crate::case) struct SolidGrowth {
+    /// Number of steps at most.
+    #[schemars(range(min = 1, max = 10000))]
+    pub steps: usize,
+    /// Longest step of a front [length]; edges of new fronts are half to one and a half as long.
+    pub increment: f64,
+    /// Where fronts grow, and which way.
+    pub criterion: FrontCriterion,
+}
 
 pub(super) fn growth(
     file: &SolidFile,

@@ -1,6 +1,6 @@
 //! What the case file of a solid may say. Shape only: ranges and sense are checked in the files beside.
 
-use crate::analysis::FrontCriterion;
+use super::growth::SolidGrowth;
 use crate::case::files::FileAccess;
 use crate::case::schema::{Names, RigidMotion, Scalar};
 use crate::nodes::solid::NodesOnFronts;
@@ -73,19 +73,6 @@ pub(in crate::case) struct SolidFile {
     /// How cracks grow; without it they stay as they are.
     #[serde(default)]
     pub growth: Option<SolidGrowth>,
-}
-
-/// How cracks grow, step by step.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(in crate::case) struct SolidGrowth {
-    /// Number of steps at most.
-    #[schemars(range(min = 1, max = 10000))]
-    pub steps: usize,
-    /// Longest step of a front [length]; edges of new fronts are half to one and a half as long.
-    pub increment: f64,
-    /// Where fronts grow, and which way.
-    pub criterion: FrontCriterion,
 }
 
 /// Numerical method.

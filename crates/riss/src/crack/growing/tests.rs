@@ -1,3 +1,5 @@
+//! Cracks that grow in blocks, shafts and around holes: areas, fronts, and what holds of any of them.
+
 use super::*;
 use crate::crack::CrackSurface;
 use crate::geometry::aabb::Aabb;
