@@ -19,11 +19,14 @@ const BLOCK: f64 = 10.0;
 /// Width, height and length of the crack over the width, and `K_I / (σ √(πa))` of strips; the last two are cracked inside.
 const STRIPS: [[f64; 3]; 4] = [[6.0, 0.25, 1.497472], [6.0, 0.4, 2.111389], [3.0, 0.3, 1.057743], [3.0, 0.5, 1.186667]];
 
+/// Factors at a point of a front.
+type Factors = dyn Fn(&FrontPointRecord) -> [f64; 3];
+
 /// A case and the factors of its fronts.
 struct Body {
     name: String,
     text: String,
-    factors: Box<dyn Fn(&FrontPointRecord) -> [f64; 3]>,
+    factors: Box<Factors>,
     /// What the largest factor is along the front.
     size: f64,
 }
@@ -46,7 +49,7 @@ impl Random {
 fn elliptic(k: f64) -> [f64; 2] {
     let (mut a, mut g, mut c, mut sum, mut power) = (1.0, (1.0 - k * k).sqrt(), k, 0.5 * k * k, 0.5);
     while c > 1e-15 {
-        (a, g, c) = (0.5 * (a + g), (a * g as f64).sqrt(), 0.5 * (a - g));
+        (a, g, c) = (0.5 * (a + g), f64::sqrt(a * g), 0.5 * (a - g));
         power *= 2.0;
         sum += power * c * c;
     }
