@@ -122,9 +122,9 @@ fn listen<T: Send>(
         (None, Ok(Err(Failure::Analysis(e)))) => Err(error::of_analysis(&e)),
         (None, Ok(Err(Failure::Files(path, e)))) => Err(error::of_files(&path, &e)),
         (None, Ok(Err(Failure::Threads(e)))) => Err(error::AnalysisError::new_err(e)),
-        (None, Ok(Err(Failure::SolidGrowth))) => {
-            Err(error::AnalysisError::new_err("cracks of solids grow in the program alone: riss run; or take [growth] out"))
-        }
+        (None, Ok(Err(Failure::SolidGrowth))) => Err(error::AnalysisError::new_err(
+            "cracks of solids grow in the program alone: riss run; or take [growth] out",
+        )),
         (None, Ok(Err(Failure::Stopped))) => Err(error::AnalysisError::new_err("the run was stopped")),
         (None, Err(_)) => {
             Err(error::AnalysisError::new_err("this is a bug in riss, not in your case; please report it"))
