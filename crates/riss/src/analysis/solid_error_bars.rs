@@ -12,7 +12,7 @@
 //! The multiples are calibrated by fronts with known factors (`cargo xtask calibrate`).
 
 use super::error_bars::j_bar;
-use crate::crack::{CrackFront, CrackSurface};
+use crate::crack::CrackSurface;
 use crate::fracture::FrontFactors;
 use crate::material::Elasticity;
 use std::f64::consts::PI;
@@ -21,8 +21,6 @@ use std::f64::consts::PI;
 const BENDS: [f64; 2] = [5.0, 2.0];
 /// At corners the spacing over the radius counts as no more than this.
 const SHARPEST: f64 = 0.3;
-/// Fronts that turn by more at a point have a corner there, and no radius [rad].
-const CORNER: f64 = 0.4;
 /// Multiple of the spacing over the length of a crack that ends on the boundary.
 const OPEN: f64 = 0.4;
 /// The residual of the solver leaves no less than this.
@@ -33,12 +31,6 @@ const LEAST: f64 = 1e-5;
 pub(super) fn crack_length(crack: &CrackSurface, is_closed: bool) -> f64 {
     let along: f64 = crack.fronts.iter().map(|f| f.length).sum();
     crack.surface.area(None) / along * if is_closed { 2.0 } else { 1.0 }
-}
-
-/// Largest curvature of a front, corners left out [1/length].
-pub(super) fn largest_curvature(front: &CrackFront) -> f64 {
-    let step = front.length / front.points.len() as f64;
-    front.points.iter().map(|p| p.curvature.abs()).filter(|c| c * step < CORNER).fold(0.0, f64::max)
 }
 
 /// Widens the bars at a point of a front, which hold the spread over the discs before.

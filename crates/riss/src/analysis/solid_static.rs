@@ -1,7 +1,7 @@
 //! Static analysis of a cracked solid by point collocation [C3D].
 
 use super::record::{Observer, Stage};
-use super::solid_error_bars::{crack_length, largest_curvature, widen_front_bars};
+use super::solid_error_bars::{crack_length, widen_front_bars};
 use super::solid_guard_rails::inspect;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
 use super::warnings::Warnings;
@@ -131,7 +131,7 @@ impl Solved {
                             let discs = front_integrals(&self.collocation, displacements, &frame, crack, &radii)?;
                             let mut factors = FrontFactors::of(&discs);
                             let open = if front.is_closed { 0.0 } else { h / crack_length(surface, false) };
-                            let bends = [p.curvature.abs(), largest_curvature(front)].map(|c| h * c);
+                            let bends = [p.curvature.abs(), front.largest_curvature()].map(|c| h * c);
                             widen_front_bars(&mut factors, &model.solid.material, bends, open, r);
                             Some(factors)
                         }

@@ -3,6 +3,8 @@
 use crate::math::Vector3;
 use serde::{Deserialize, Serialize};
 
+/// Fronts that turn by more at a point have a corner there, and no radius [rad].
+const CORNER: f64 = 0.4;
 /// Sums of unit vectors that are shorter than this have no direction: they were opposite.
 const OPPOSITE: f64 = 1e-6;
 
@@ -78,6 +80,12 @@ impl CrackFront {
             curvature: p.curvature * (1.0 - t) + q.curvature * t,
             s,
         }
+    }
+
+    /// Largest curvature, corners left out [1/length].
+    pub fn largest_curvature(&self) -> f64 {
+        let step = self.length / self.points.len() as f64;
+        self.points.iter().map(|p| p.curvature.abs()).filter(|c| c * step < CORNER).fold(0.0, f64::max)
     }
 
     /// `n` points evenly along the front: with both ends if it is open.

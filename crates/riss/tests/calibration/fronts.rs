@@ -178,19 +178,6 @@ fn compare(body: &Body) -> Vec<Found> {
         let factors = p.factors?;
         let known = (body.factors)(p);
         let error = (0..3).map(|m| (factors.factors[m] - known[m]).abs()).fold(0.0, f64::max);
-        if std::env::var_os("RISS_CALIBRATION").is_some_and(|v| v == "points") {
-            println!(
-                "POINT,{},{:?},{known:?},{:e},{:e},{:e},{:e},{}",
-                body.name,
-                factors.factors,
-                factors.uncertainty,
-                factors.j,
-                body.size,
-                p.radius.unwrap(),
-                result.n_nodes
-            );
-            println!("TEXT {:?}", body.text);
-        }
         Some(Found {
             kind: kind.into(),
             number: number.parse().unwrap(),

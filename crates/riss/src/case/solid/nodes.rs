@@ -4,7 +4,7 @@ use super::body::bounds;
 use super::schema::{Finer, SolidFile};
 use crate::analysis::SolidSettings;
 use crate::case::build::report::Report;
-use crate::crack::CrackSurface;
+use crate::crack::{CrackFront, CrackSurface};
 use crate::geometry::surface::Surface;
 use crate::math::Vector3;
 use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SpacingPlan, estimated_solid_nodes, wall_regions};
@@ -16,8 +16,6 @@ const FRONT_FRACTION: f64 = 1.0 / 30.0;
 /// The same over the least radius of curvature of a front, and no less than this share of the size of the crack.
 const BEND_FRACTION: f64 = 1.0 / 13.0;
 const LEAST_FRACTION: f64 = 1.0 / 250.0;
-/// Fronts that turn by more at a point have a corner there, and no radius [rad].
-const CORNER: f64 = 0.4;
 /// Growth of the spacing, if the case says none.
 const GROWTH: f64 = 0.15;
 /// Least spacing over the size of the body; below it positions have too few digits left.
@@ -51,7 +49,8 @@ pub(super) fn settings(
     let at_front = |crack: &CrackSurface| {
         let extent = crack.surface.bounds().size().norm() / 2f64.sqrt();
         let by_size = (FRONT_FRACTION * extent).min(largest);
-        let by_bend = (BEND_FRACTION * least_radius(crack)).max(LEAST_FRACTION * extent);
+        let bend = crack.fronts.iter().map(CrackFront::largest_curvature).fold(f64::MIN_POSITIVE, f64::max);
+        let by_bend = (BEND_FRACTION / bend).max(LEAST_FRACTION * extent);
         nodes.front_spacing.unwrap_or(by_size.min(by_bend))
     };
     let at_fronts: Vec<f64> = cracks.iter().map(at_front).collect();
@@ -76,13 +75,6 @@ pub(super) fn settings(
         points_on_front: file.fracture.points,
     };
     Some((settings, plan))
-}
-
-/// Least radius of curvature of the fronts of a crack, corners left out [length].
-fn least_radius(crack: &CrackSurface) -> f64 {
-    let points = crack.fronts.iter().flat_map(|f| f.points.iter().map(|p| (p, f.length / f.points.len() as f64)));
-    let bends = points.map(|(p, step)| (p.curvature.abs(), step)).filter(|(c, step)| c * step < CORNER);
-    1.0 / bends.map(|b| b.0).fold(f64::MIN_POSITIVE, f64::max)
 }
 
 fn finer_regions(finer: &Finer, key: &str, body: &Surface, report: &mut Report) -> Option<Vec<(Region, f64)>> {
