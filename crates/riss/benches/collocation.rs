@@ -4,7 +4,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use riss::analysis::{SolidSettings, solid_collocation, solid_nodes};
 use riss::approximation::{FitBuffer, FrontFrame, ShapeFunctions};
 use riss::case::AnyCase;
-use riss::fracture::front_integrals;
+use riss::fracture::{DiscCut, front_integrals};
 use riss::math::axis;
 use riss::model::SolidModel;
 use riss::nodes::solid::solid_obstacles;
@@ -67,7 +67,7 @@ fn bench(c: &mut Criterion) {
     let frame = FrontFrame { position: axis::<3>(1) * 2.0, ahead: axis(0), normal: axis(2), curvature: 0.0 };
     group.throughput(Throughput::Elements(1));
     group.bench_function("factors_of_a_disc", |b| {
-        b.iter(|| black_box(front_integrals(&collocation, &found, &frame, 0, &[4.0]).unwrap()));
+        b.iter(|| black_box(front_integrals(&collocation, &found, &DiscCut::plane(&frame), 0, &[4.0]).unwrap()));
     });
     group.finish();
 }

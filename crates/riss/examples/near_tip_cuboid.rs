@@ -11,7 +11,7 @@ mod boxes;
 use boxes::{Box, Crack, HalfPlane, displacement_error, stress};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
 use riss::exact::CrackFrontField;
-use riss::fracture::front_integrals;
+use riss::fracture::{DiscCut, front_integrals};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Vector, axis};
 use riss::model::{RigidMotion, Solid, SurfaceConditions, SurfacePoint, VectorField};
@@ -74,7 +74,7 @@ fn main() -> Result<(), Failure> {
     let (start, before) = (Instant::now(), processor());
     for k in 0..=8 {
         let y = b * f64::from(k) / 8.0;
-        let discs = front_integrals(&collocation, &found.displacements, &frame(y), 0, &[2.0, 3.0, 4.0, 6.0])?;
+        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(y)), 0, &[2.0, 3.0, 4.0, 6.0])?;
         let errors: Vec<String> = discs.iter().map(|d| format!("{:+.4} %", 100.0 * (d.factors[0] - 1.0))).collect();
         println!("K_I at y = {y:.1}: {}", errors.join(" "));
     }

@@ -15,6 +15,7 @@ pub mod record;
 pub mod refinement;
 pub mod settings;
 mod solid_error_bars;
+mod solid_front_discs;
 pub mod solid_growth;
 mod solid_guard_rails;
 pub mod solid_record;

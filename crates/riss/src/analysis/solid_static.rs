@@ -2,13 +2,14 @@
 
 use super::record::{Observer, Stage};
 use super::solid_error_bars::{crack_length, widen_front_bars};
+use super::solid_front_discs::free_disc;
 use super::solid_guard_rails::inspect;
 use super::solid_record::{FrontPointRecord, FrontRecord, SolidResult};
 use super::warnings::Warnings;
-use crate::approximation::{EnrichedFront, FitBuffer, FrontEnds, FrontFrame, FrontLine, ShapeFunctions};
-use crate::crack::{CrackFront, FrontPoint};
+use crate::approximation::{CrackSides, EnrichedFront, FitBuffer, FrontEnds, FrontFrame, FrontLine, ShapeFunctions};
+use crate::crack::{CrackFront, CrackSurface, FrontPoint};
 use crate::error::Result;
-use crate::fracture::{FrontFactors, front_integrals};
+use crate::fracture::{DiscCut, FrontFactors, front_integrals};
 use crate::geometry::obstacles::{Opaque, OpaqueTriangles};
 use crate::material::Elasticity;
 use crate::math::{Matrix, Vector3};
@@ -17,21 +18,13 @@ use crate::nodes::cloud::Cloud;
 use crate::nodes::solid::{FacePair, NodesOnFronts, SolidCloud, SolidSpacing, generate_solid, solid_obstacles};
 use crate::system::{Collocation, CollocationSettings, CollocationSolution};
 use rayon::prelude::*;
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Radii of the discs around a front point, over the largest.
 const DISCS: [f64; 3] = [0.5, 0.75, 1.0];
-/// Largest disc over the spacing at the front, and the smallest that is of use.
-const LARGEST_DISC: f64 = 8.0;
-const SMALLEST_DISC: f64 = 2.0;
 /// Reach of the functions of a front over its least radius of curvature, and the least over the spacing there.
 const BEND: f64 = 0.6;
 const LEAST_REACH: f64 = 8.0;
-/// Directions in which a disc is probed.
-const PROBES: usize = 24;
-/// Share of a turn on each side of the crack that is not probed.
-const BESIDE_CRACK: f64 = 0.02;
 
 /// Numerical choices for a solid.
 #[derive(Clone, Debug)]
@@ -61,7 +54,7 @@ pub fn solid_collocation(
     obstacles: Arc<OpaqueTriangles>,
     settings: &SolidSettings,
 ) -> Collocation<3> {
-    let fronts = model.cracks.iter().flat_map(|c| &c.fronts).map(|f| enriched(f, settings)).collect();
+    let fronts = model.cracks.iter().flat_map(|c| enriched(c, settings)).collect();
     let obstacles = obstacles as Arc<dyn Opaque<3> + Send>;
     Collocation::new(model.solid.clone(), &nodes.cloud, obstacles, fronts, settings.collocation)
 }
@@ -118,17 +111,20 @@ impl Solved {
     fn fronts(&self, model: &SolidModel, settings: &SolidSettings) -> Result<Vec<FrontRecord>> {
         let mut records = vec![];
         for (crack, surface) in model.cracks.iter().enumerate() {
+            let sides: Option<&dyn CrackSides<3>> =
+                if surface.surface.is_plane() { None } else { Some(&surface.surface) };
             for front in &surface.fronts {
                 let evaluate = |p: &FrontPoint| {
                     let h = settings.spacing.at(p.position);
-                    let largest = free_disc(model, &self.obstacles, crack, p, h);
+                    let frame = frame(p);
+                    let cut = DiscCut { frame: &frame, sides };
+                    let largest = free_disc(model, &self.obstacles, crack, &cut, h);
                     let factors = match largest {
                         None => None,
                         Some(r) => {
                             let radii = DISCS.map(|share| share * r);
                             let displacements = &self.solution.displacements;
-                            let frame = frame(p);
-                            let discs = front_integrals(&self.collocation, displacements, &frame, crack, &radii)?;
+                            let discs = front_integrals(&self.collocation, displacements, &cut, crack, &radii)?;
                             let mut factors = FrontFactors::of(&discs);
                             let open = if front.is_closed { 0.0 } else { h / crack_length(surface, false) };
                             let bends = [p.curvature.abs(), front.largest_curvature()].map(|c| h * c);
@@ -183,15 +179,21 @@ fn stress(material: &Elasticity, gradient: &Matrix<3>) -> Matrix<3> {
         + Matrix::from_diagonal_element(material.lame() * gradient.trace())
 }
 
-/// A front with its axes, for the functions of the front near it.
-fn enriched(front: &CrackFront, settings: &SolidSettings) -> EnrichedFront<3> {
-    let ends = if front.is_closed { FrontEnds::Closed } else { FrontEnds::Open };
-    let least = front.points.iter().map(|p| settings.spacing.at(p.position)).fold(f64::INFINITY, f64::min);
-    let line = FrontLine::new(front.points.iter().map(frame).collect(), ends);
-    let wanted = settings.collocation.front_reach * least;
-    // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
-    let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
-    EnrichedFront { line, reach: wanted.min((BEND / bend).max(LEAST_REACH * least)) }
+/// The fronts of a crack with their axes, for their functions near them.
+fn enriched(crack: &CrackSurface, settings: &SolidSettings) -> Vec<EnrichedFront<3>> {
+    let sides: Option<Arc<dyn CrackSides<3>>> =
+        if crack.surface.is_plane() { None } else { Some(Arc::new(crack.surface.clone())) };
+    let one = |front: &CrackFront| {
+        let ends = if front.is_closed { FrontEnds::Closed } else { FrontEnds::Open };
+        let least = front.points.iter().map(|p| settings.spacing.at(p.position)).fold(f64::INFINITY, f64::min);
+        let line = FrontLine::new(front.points.iter().map(frame).collect(), ends);
+        let wanted = settings.collocation.front_reach * least;
+        // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
+        let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let reach = wanted.min((BEND / bend).max(LEAST_REACH * least));
+        EnrichedFront { line, reach, crack: sides.clone() }
+    };
+    crack.fronts.iter().map(one).collect()
 }
 
 fn frame(p: &FrontPoint) -> FrontFrame<3> {
@@ -202,30 +204,6 @@ fn frame(p: &FrontPoint) -> FrontFrame<3> {
 fn stations(front: &CrackFront, n: usize) -> Vec<FrontPoint> {
     let offset = if front.is_closed { 0.0 } else { 0.5 };
     (0..n).map(|k| front.at(front.length * (k as f64 + offset) / n as f64)).collect()
-}
-
-/// Radius of the largest disc around a front point that lies in the body with nothing but its own crack in it, up to
-/// what is of use for the spacing `h`; none if that is too small.
-fn free_disc(model: &SolidModel, obstacles: &OpaqueTriangles, crack: usize, p: &FrontPoint, h: f64) -> Option<f64> {
-    let is_free = |r: f64| {
-        let at = |k: usize| {
-            let share = k as f64 / (PROBES - 1) as f64;
-            let theta = 2.0 * PI * (share - 0.5) * (1.0 - 2.0 * BESIDE_CRACK);
-            p.position + (p.ahead * theta.cos() + p.normal * theta.sin()) * r
-        };
-        let inside = (0..PROBES).all(|k| model.body.contains(at(k)));
-        let apart = (1..PROBES).all(|k| obstacles.visible(at(k - 1), at(k)));
-        let behind = p.position - p.ahead * r;
-        inside && apart && model.cracks[crack].surface.closest_within(behind, 0.01 * r).is_some()
-    };
-    let mut r = LARGEST_DISC * h;
-    while r >= SMALLEST_DISC * h {
-        if [1.0, 0.75, 0.5, 0.25].iter().all(|share| is_free(share * r)) {
-            return Some(r);
-        }
-        r *= 0.9;
-    }
-    None
 }
 
 /// Pairs in the order of the unknowns.
@@ -241,6 +219,7 @@ mod tests {
     use super::*;
     use crate::case::AnyCase;
     use crate::math::Vector3;
+    use std::f64::consts::PI;
 
     fn solve(text: &str) -> (SolidModel, SolidResult) {
         let case = AnyCase::parse(text, "case.toml".as_ref(), &[]).map_err(|e| e.to_string()).unwrap();

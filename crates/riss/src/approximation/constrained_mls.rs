@@ -5,14 +5,14 @@
 //! functions of [EFG, Eq. 50] with their exact derivatives, and in space these times the length along the front. Between nodes the constraint is dropped.
 
 use super::ShapeFunctions;
-use super::front_functions::{FrontFrame, FrontLine};
+use super::front_functions::FrontFrame;
+use super::front_sheets::EnrichedFront;
 use super::least_squares::{Column, LeastSquares};
 use super::settings::{CollocationWeight, ConstrainedMlsSettings};
 use super::taylor_basis::TaylorBasis;
 use super::tip_functions::MOST_FUNCTIONS;
 use super::visible_nodes::VisibleNodes;
 use crate::error::{Error, Result};
-use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Opaque;
 use crate::math::{Matrix, Vector};
 use crate::nodes::cloud::Cloud;
@@ -30,35 +30,16 @@ const DEPENDENT: f64 = 1e-3;
 const DEPENDENT_FRONT: f64 = 1e-6;
 /// Nearer to a front than this share of the support, its functions have no derivatives that could be used.
 const CORE: f64 = 1e-6;
-/// Reach of the functions of a front over the spacing of nodes there: from here on the error of the polynomials
-/// outside no longer counts. At 4 the factors are off by 2 %, at 6 by 0.1 to 0.8 %, at 8 by 0.02 to 0.1 %, at 12 by 0.002
-/// to 0.05 %.
-pub const REACH: f64 = 12.0;
-
 /// Constrained moving least squares over a cloud.
 #[derive(Clone)]
 pub struct ConstrainedMls<const D: usize> {
     nodes: VisibleNodes<D>,
     fronts: Vec<EnrichedFront<D>>,
+    /// Angles of the nodes at each front [rad].
+    angles: Vec<Vec<f64>>,
     basis: TaylorBasis<D>,
     columns: Vec<Column<D>>,
     settings: ConstrainedMlsSettings,
-}
-
-/// A front with the distance from it up to which the basis is enriched.
-#[derive(Clone, Debug)]
-pub struct EnrichedFront<const D: usize> {
-    /// The front.
-    pub line: FrontLine<D>,
-    /// Nodes and points nearer to it than this have the functions of the front in their basis [length].
-    pub reach: f64,
-}
-
-impl<const D: usize> EnrichedFront<D> {
-    /// A front with the reach that measurements favor, for nodes at the given spacing [length].
-    pub fn new(line: FrontLine<D>, spacing: f64) -> Self {
-        Self { line, reach: REACH * spacing }
-    }
 }
 
 /// Working memory of one thread.
@@ -112,7 +93,8 @@ impl<const D: usize> ConstrainedMls<D> {
                 Column { value: 0.0, gradient, second_derivatives }
             })
             .collect();
-        Self { nodes: VisibleNodes::new(cloud, obstacles), fronts, basis, columns, settings }
+        let angles = fronts.iter().map(|f| f.angles(&cloud)).collect();
+        Self { nodes: VisibleNodes::new(cloud, obstacles), fronts, angles, basis, columns, settings }
     }
 
     /// The nodes.
@@ -204,23 +186,18 @@ impl<const D: usize> ConstrainedMls<D> {
         Error::PoorStencil { node, position: at.iter().copied().collect(), n_neighbors, needed: self.basis.len() }
     }
 
-    /// The frame of the front whose functions are in the basis at a point.
-    fn frame(&self, center: Center<D>, at: Vector<D>, radius: f64) -> Option<FrontFrame<D>> {
+    /// The front whose functions are in the basis at a point, with its frame there.
+    fn frame(&self, center: Center<D>, at: Vector<D>, radius: f64) -> Option<(usize, FrontFrame<D>)> {
         let core = match center {
             Center::Node(_) | Center::Point(_) => CORE * radius,
             Center::Without(_) => -1.0,
         };
-        let near = self.fronts.iter().filter_map(|front| {
-            let reach = Aabb { lower: at.add_scalar(-front.reach), upper: at.add_scalar(front.reach) };
-            if !reach.intersects(front.line.bounds()) {
-                return None;
-            }
-            let frame = front.line.nearest(at)?;
+        let near = self.fronts.iter().enumerate().filter_map(|(f, front)| {
+            let (distance, frame) = front.within_reach(at, front.reach)?;
             let [x, y] = frame.plane(at);
-            let along = (at - frame.position).norm();
-            (along < front.reach && x.hypot(y) > core).then_some((along, frame))
+            (x.hypot(y) > core).then_some((distance, f, frame))
         });
-        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frame)| frame)
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, f, frame)| (f, frame))
     }
 
     /// Fits the basis to unit values of the neighbors.
@@ -247,8 +224,12 @@ impl<const D: usize> ConstrainedMls<D> {
         let kept = fit.orthogonalize(n_leading, DEPENDENT);
         let rest = self.basis.len() - n_leading;
         let is_complete = fit.orthogonalize(rest, DEPENDENT) == rest && kept == n_leading && kept_constant;
-        if let Some(frame) = self.frame(center, at, radius).filter(|_| is_complete) {
-            self.enrich(&frame, at, sight, radius, neighbors, fit);
+        if let Some((front, frame)) = self.frame(center, at, radius).filter(|_| is_complete) {
+            let angle = match center.own() {
+                Some(i) => self.angles[front][i as usize],
+                None => self.fronts[front].angle(&frame, sight),
+            };
+            self.enrich((front, &frame), at, angle, radius, neighbors, fit);
         }
         Rank { is_complete, n_leading: if kept_constant { kept } else { 0 } }
     }
@@ -257,17 +238,17 @@ impl<const D: usize> ConstrainedMls<D> {
     /// axes of a front change along it.
     fn enrich(
         &self,
-        frame: &FrontFrame<D>,
+        (front, frame): (usize, &FrontFrame<D>),
         at: Vector<D>,
-        sight: Vector<D>,
+        angle: f64,
         radius: f64,
         neighbors: &[(f64, u32)],
         fit: &mut LeastSquares<D>,
     ) {
-        let jets = frame.jets(at, sight);
+        let jets = frame.jets(at, angle);
         let (scale, tangent) = (1.0 / radius.sqrt(), frame.tangent());
         // On the front itself only the value counts.
-        let slope = if frame.polar(at, sight)[0] > CORE * radius { scale * radius } else { 0.0 };
+        let slope = if frame.polar(at, angle)[0] > CORE * radius { scale * radius } else { 0.0 };
         let columns: [Column<D>; 2 * MOST_FUNCTIONS] = std::array::from_fn(|k| {
             if slope == 0.0 {
                 return Column::zero();
@@ -284,7 +265,7 @@ impl<const D: usize> ConstrainedMls<D> {
         let count = if D == 3 { 2 * MOST_FUNCTIONS } else { MOST_FUNCTIONS };
         fit.add_columns(&columns[..count], neighbors, |j, values| {
             let place = self.cloud().positions[j as usize];
-            let f = frame.values(place, self.cloud().sights[j as usize]);
+            let f = frame.values(place, self.angles[front][j as usize]);
             let along = (place - at).dot(&tangent) / radius;
             for (k, value) in values.iter_mut().enumerate() {
                 *value = match k.checked_sub(MOST_FUNCTIONS) {

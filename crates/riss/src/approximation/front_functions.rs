@@ -3,10 +3,10 @@
 //! A front is a point in the plane and a curve in space. Near a place it is taken for an arc of a circle in the plane of
 //! the crack, so that distance and angle have closed derivatives.
 
+use super::front_sheets::on_sheet;
 use super::tip_functions::{MOST_FUNCTIONS, TipFunctions};
 use crate::geometry::aabb::Aabb;
 use crate::math::{Matrix, Vector};
-use std::f64::consts::TAU;
 
 /// A point of a crack front with its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,28 +68,24 @@ impl<const D: usize> FrontFrame<D> {
         Self { position: self.position + along / stretch - self.ahead * drop, ahead, ..*self }
     }
 
-    /// Distance and angle; `sight` tells the side of points on the crack, where the angle is ±π.
+    /// Distance and angle, this on the sheet nearest to a known angle `near`: 0 for places that are not on or behind a
+    /// crack.
     #[inline]
-    pub fn polar(&self, at: Vector<D>, sight: Vector<D>) -> [f64; 2] {
+    pub fn polar(&self, at: Vector<D>, near: f64) -> [f64; 2] {
         let [x, y] = self.plane(at);
-        let theta = y.atan2(x);
-        if at == sight {
-            return [x.hypot(y), theta];
-        }
-        let [sx, sy] = self.plane(sight);
-        [x.hypot(y), theta + TAU * ((sy.atan2(sx) - theta) / TAU).round()]
+        [x.hypot(y), on_sheet(y.atan2(x), near)]
     }
 
     /// Values of the four functions [√length].
     #[inline]
-    pub fn values(&self, at: Vector<D>, sight: Vector<D>) -> [f64; MOST_FUNCTIONS] {
-        let [r, theta] = self.polar(at, sight);
+    pub fn values(&self, at: Vector<D>, near: f64) -> [f64; MOST_FUNCTIONS] {
+        let [r, theta] = self.polar(at, near);
         TipFunctions::Full.angular(theta).map(|g| r.sqrt() * g[0])
     }
 
     /// Values and derivatives of the four functions; the point must not lie on the front.
-    pub fn jets(&self, at: Vector<D>, sight: Vector<D>) -> [Jet<D>; MOST_FUNCTIONS] {
-        let [r, theta] = self.polar(at, sight);
+    pub fn jets(&self, at: Vector<D>, near: f64) -> [Jet<D>; MOST_FUNCTIONS] {
+        let [r, theta] = self.polar(at, near);
         let (sin, cos) = theta.sin_cos();
         let d = at - self.position;
         let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
@@ -188,6 +184,7 @@ fn between<const D: usize>(a: &FrontFrame<D>, b: &FrontFrame<D>, t: f64) -> Fron
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     fn frame(curvature: f64) -> FrontFrame<3> {
         let ahead = Vector::<3>::new(0.6, 0.8, 0.0);
@@ -215,12 +212,12 @@ mod tests {
             for at in
                 [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1), Vector::<3>::new(0.3, -0.5, 0.2)]
             {
-                let jets = f.jets(at, at);
+                let jets = f.jets(at, 0.0);
                 for d in 0..3 {
                     let step = Vector::<3>::ith(d, 1e-6);
-                    let (ahead, behind) = (f.jets(at + step, at + step), f.jets(at - step, at - step));
+                    let (ahead, behind) = (f.jets(at + step, 0.0), f.jets(at - step, 0.0));
                     for k in 0..MOST_FUNCTIONS {
-                        assert!((jets[k].value - f.values(at, at)[k]).abs() < 1e-15);
+                        assert!((jets[k].value - f.values(at, 0.0)[k]).abs() < 1e-15);
                         let slope = (ahead[k].value - behind[k].value) / 2e-6;
                         assert!((slope - jets[k].gradient[d]).abs() < 1e-8, "{k} {d}: {slope} {:?}", jets[k]);
                         let bend = (ahead[k].gradient - behind[k].gradient) / 2e-6;

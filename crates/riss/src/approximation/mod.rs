@@ -14,6 +14,7 @@ mod extra;
 mod fade;
 pub mod finite_elements;
 pub mod front_functions;
+pub mod front_sheets;
 mod global_functions;
 mod least_squares;
 pub mod mls;
@@ -29,10 +30,11 @@ mod ways;
 pub mod weight_function;
 
 use crate::math::{Matrix, Vector};
-pub use constrained_mls::{ConstrainedMls, EnrichedFront, FitBuffer};
+pub use constrained_mls::{ConstrainedMls, FitBuffer};
 pub use enrichment::Enrichment;
 pub use finite_elements::FiniteElements;
 pub use front_functions::{FrontEnds, FrontFrame, FrontLine};
+pub use front_sheets::{CrackSides, EnrichedFront};
 pub use moving_least_squares::{MovingLeastSquares, Surroundings};
 pub use settings::{
     ApproximationSettings, Basis, CollocationWeight, ConstrainedMlsSettings, CrackSmoothing, EnrichmentKind,

@@ -5,8 +5,11 @@
 //! `J = -∫ P_1α q,α dA + ∫ (P_13,3 - b_k u_k,1) q dA - ∫_faces t_k u_k,1 q ds`, α = 1, 2.
 //! The second term holds what changes along the front; its derivatives are those of the fit. The auxiliary fields are
 //! those of a straight front, which are exact in the disc, so that no term for the curvature of the front is missing.
+//! Where the crack is bent the disc is cut along it: the auxiliary fields are continued up to the crack [`DiscCut`], and
+//! since they leave tractions there, the faces add `∫ P_1α n_α q ds`.
 //! The one for T is that of a unit force per length of the front, along `ahead` [Nakamura1992].
 
+use super::disc_cut::DiscCut;
 use crate::approximation::{FitBuffer, FrontFrame, ShapeFunctions};
 use crate::error::Result;
 use crate::exact::crack_tip_field::{TipMode, tip_field};
@@ -17,7 +20,7 @@ use crate::math::{Matrix, Vector, axis};
 use crate::model::{SurfacePoint, VectorField};
 use crate::system::Collocation;
 use rayon::prelude::*;
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 
 /// `q` is one up to this share of the radius and falls linearly from there.
 const PLATEAU: f64 = 0.5;
@@ -82,8 +85,7 @@ impl FrontFactors {
 
 /// Evaluates discs of the given radii at a point of the front of a crack.
 ///
-/// The discs must lie inside the body, and the crack must be plane in them. The tangent that belongs to mode III is
-/// `ahead` × `normal`.
+/// The discs must lie inside the body with nothing but the crack in them. The tangent that belongs to mode III is `ahead` × `normal`.
 ///
 /// `T = E' (I + ν ε_33) + σ_22` with the interaction `I` with the unit force, the strain along the front and the stress
 /// that tractions on the faces leave across the crack [Nakamura1992].
@@ -93,11 +95,11 @@ impl FrontFactors {
 pub fn front_integrals<const D: usize>(
     collocation: &Collocation<D>,
     displacements: &[Vector<D>],
-    frame: &FrontFrame<D>,
+    cut: &DiscCut<'_, D>,
     crack: usize,
     radii: &[f64],
 ) -> Result<Vec<FrontIntegrals>> {
-    let disc = Disc { collocation, displacements, frame, axes: axes(frame), crack };
+    let disc = Disc { collocation, displacements, cut, axes: axes(cut.frame), crack };
     radii.iter().map(|&radius| disc.integrate(radius)).collect()
 }
 
@@ -145,7 +147,7 @@ impl Auxiliary {
 struct Disc<'a, const D: usize> {
     collocation: &'a Collocation<D>,
     displacements: &'a [Vector<D>],
-    frame: &'a FrontFrame<D>,
+    cut: &'a DiscCut<'a, D>,
     axes: Matrix<D>,
     crack: usize,
 }
@@ -169,9 +171,9 @@ struct State<const D: usize> {
 impl<const D: usize> Disc<'_, D> {
     fn integrate(&self, radius: f64) -> Result<FrontIntegrals> {
         let solid = &self.collocation.solid;
-        let mut points = slope_points(PLATEAU * radius, radius);
+        let mut points = self.around(slope_rule(PLATEAU * radius, radius));
         if D == 3 || !is_zero(&solid.body_force) {
-            points.extend(plateau_points(PLATEAU * radius));
+            points.extend(self.around(plateau_rule(PLATEAU * radius)));
         }
         let values: Vec<Integrals> = points
             .par_iter()
@@ -180,7 +182,7 @@ impl<const D: usize> Disc<'_, D> {
         let mut sum = Integrals::default();
         // In order, so that any number of threads gives the same bits.
         values.iter().for_each(|v| (0..5).for_each(|i| sum[i] += v[i]));
-        if !solid.faces.get(self.crack).is_none_or(is_zero) {
+        if self.cut.sides.is_some() || !solid.faces.get(self.crack).is_none_or(is_zero) {
             let faces = self.face_terms(radius)?;
             (0..5).for_each(|i| sum[i] += faces[i]);
         }
@@ -194,19 +196,15 @@ impl<const D: usize> Disc<'_, D> {
 
     /// Strain along the front, just ahead of it.
     fn strain_along(&self, radius: f64) -> Result<f64> {
-        let at = self.place(BESIDE * radius, 0.0);
+        let at = self.cut.place(BESIDE * radius, 0.0);
         Ok(self.state(at, at, &mut Default::default())?.gradient[(D - 1, D - 1)])
     }
 
     /// Stress across the crack at the front, which is that of the tractions on its faces.
     fn stress_across(&self) -> f64 {
-        let (position, normal) = (self.frame.position, -self.frame.normal);
+        let (position, normal) = (self.cut.frame.position, -self.cut.frame.normal);
         let at = SurfacePoint { position, normal, sight: position };
         self.collocation.solid.faces.get(self.crack).map_or(0.0, |f| f.value(&at).dot(&normal))
-    }
-
-    fn place(&self, r: f64, theta: f64) -> Vector<D> {
-        self.frame.position + self.frame.ahead * (r * theta.cos()) + self.frame.normal * (r * theta.sin())
     }
 
     fn state(&self, at: Vector<D>, sight: Vector<D>, buffer: &mut Buffer<D>) -> Result<State<D>> {
@@ -233,7 +231,7 @@ impl<const D: usize> Disc<'_, D> {
     }
 
     fn area_term(&self, p: &DiscPoint, radius: f64, buffer: &mut Buffer<D>) -> Result<Integrals> {
-        let at = self.place(p.r, p.theta);
+        let at = self.cut.place(p.r, p.theta);
         let state = self.state(at, at, buffer)?;
         let is_slope = p.r > PLATEAU * radius;
         let q = if is_slope { (radius - p.r) / ((1.0 - PLATEAU) * radius) } else { 1.0 };
@@ -256,28 +254,55 @@ impl<const D: usize> Disc<'_, D> {
         Ok(found.map(|v| v * p.weight))
     }
 
-    /// What tractions on the faces add.
+    /// What the faces add: tractions, and where the crack is bent what the fields leave there.
     fn face_terms(&self, radius: f64) -> Result<Integrals> {
         let mut buffer = Default::default();
         let mut sum = Integrals::default();
         let solid = &self.collocation.solid;
+        let is_bent = self.cut.sides.is_some();
+        let turn = |v: Vector<D>| self.axes.transpose() * v;
         for side in [1.0, -1.0] {
-            let normal = self.frame.normal * -side;
             for (r, weight) in face_points(radius) {
                 let q = ((radius - r) / ((1.0 - PLATEAU) * radius)).min(1.0);
-                let position = self.frame.position - self.frame.ahead * r;
+                let (position, across) = self.cut.face(r);
+                let normal = across * -side;
+                let length = normal.norm();
+                let normal = normal / length;
                 let sight = position - normal * (OFF * radius);
-                let traction = solid.faces[self.crack].value(&SurfacePoint { position, normal, sight });
-                let traction = self.axes.transpose() * traction * (weight * q);
+                let traction = solid.faces.get(self.crack).map_or(Vector::zeros(), |f| {
+                    turn(f.value(&SurfacePoint { position, normal, sight }))
+                });
+                let (normal, share) = (turn(normal), weight * length * q);
                 let state = self.state(position, sight, &mut buffer)?;
-                sum[4] -= traction.dot(&state.gradient.column(0));
+                let energy = 0.5 * state.stress.dot(&state.gradient);
+                sum[4] += (energy * normal[0] - traction.dot(&state.gradient.column(0))) * share;
+                let theta = self.cut.angle(r) - if side > 0.0 { 0.0 } else { TAU };
                 for (mode, field) in Auxiliary::all::<D>() {
-                    let gradient = field.gradient::<D>(&solid.material, r, side * PI);
-                    sum[mode] -= traction.dot(&gradient.column(0));
+                    let gradient = field.gradient::<D>(&solid.material, r, theta);
+                    sum[mode] -= traction.dot(&gradient.column(0)) * share;
+                    if is_bent {
+                        let stress = stress(&solid.material, &gradient);
+                        let left = flux(&stress, &state.gradient, &normal);
+                        sum[mode] += (state.stress.dot(&gradient) * normal[0] - left) * share;
+                    }
                 }
             }
         }
         Ok(sum)
+    }
+
+    /// Points at radii with their weights, in both halves of the disc.
+    fn around(&self, radii: impl Iterator<Item = (f64, f64)>) -> Vec<DiscPoint> {
+        let mut points = vec![];
+        for (r, weight) in radii {
+            let above = self.cut.angle(r);
+            for (y, wy) in gauss_legendre(ANGULAR) {
+                for (from, range) in [(0.0, above), (above - TAU, TAU - above)] {
+                    points.push(DiscPoint { r, theta: from + range * y, weight: weight * wy * range * r });
+                }
+            }
+        }
+        points
     }
 }
 
@@ -312,14 +337,13 @@ fn is_zero<const D: usize>(field: &VectorField<D>) -> bool {
 }
 
 /// Gauss points where `q` falls, between two radii.
-fn slope_points(from: f64, to: f64) -> Vec<DiscPoint> {
-    let rule = gauss_legendre(RADIAL).into_iter().map(|(x, w)| (from + x * (to - from), w * (to - from)));
-    around(rule)
+fn slope_rule(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+    gauss_legendre(RADIAL).into_iter().map(move |(x, w)| (from + x * (to - from), w * (to - from)))
 }
 
 /// Gauss points where `q` is one, up to a radius; `r = s²` takes roots out of the integrands.
-fn plateau_points(to: f64) -> Vec<DiscPoint> {
-    around(gauss_legendre(RADIAL).into_iter().map(|(x, w)| (to * x * x, 2.0 * to * x * w)))
+fn plateau_rule(to: f64) -> impl Iterator<Item = (f64, f64)> {
+    gauss_legendre(RADIAL).into_iter().map(move |(x, w)| (to * x * x, 2.0 * to * x * w))
 }
 
 /// Gauss points along a face up to a radius.
@@ -333,17 +357,4 @@ fn face_points(radius: f64) -> impl Iterator<Item = (f64, f64)> {
             (s * s, 2.0 * weight * s * length)
         })
     })
-}
-
-/// Points at radii with their weights, in both halves of the disc.
-fn around(radii: impl Iterator<Item = (f64, f64)>) -> Vec<DiscPoint> {
-    let mut points = vec![];
-    for (r, weight) in radii {
-        for (y, wy) in gauss_legendre(ANGULAR) {
-            for middle in [0.5 * PI, -0.5 * PI] {
-                points.push(DiscPoint { r, theta: middle + PI * (y - 0.5), weight: weight * wy * PI * r });
-            }
-        }
-    }
-    points
 }

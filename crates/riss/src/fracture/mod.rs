@@ -5,6 +5,7 @@
 //! [`front_integral`] evaluates points of a front, and [`rankine`] is the criterion of a strength.
 
 pub mod configurational_force;
+pub mod disc_cut;
 pub mod fatigue;
 pub mod front_integral;
 pub mod growth_criterion;
@@ -14,6 +15,7 @@ pub mod settings;
 pub mod tip_domain;
 
 pub use configurational_force::{ConfigurationalForce, configurational_forces, force_of_factors};
+pub use disc_cut::DiscCut;
 pub use front_integral::{FrontFactors, FrontIntegrals, front_integrals};
 pub use growth_criterion::{EquivalentFactor, GrowthCriterion, TipDriving, kinked_factors};
 pub use interaction_integral::{

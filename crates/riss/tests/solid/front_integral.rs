@@ -8,7 +8,7 @@ use crate::boxes::{Box, Crack, HalfPlane, displacement_error};
 use crate::patch::{Power, material};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
 use riss::exact::CrackFrontField;
-use riss::fracture::{FrontIntegrals, front_integrals};
+use riss::fracture::{DiscCut, FrontIntegrals, front_integrals};
 use riss::math::{Matrix, Vector, axis};
 use riss::model::{RigidMotion, Solid, SurfaceConditions, SurfacePoint, VectorField};
 use riss::system::{Collocation, CollocationSettings};
@@ -42,7 +42,7 @@ fn solve(n: usize, crack: CrackFrontField, smooth: Power<3>) -> Vec<(f64, FrontI
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     assert!(displacement_error(&collocation, &found.displacements, exact) < 0.01);
     let at = |along: f64| {
-        let discs = front_integrals(&collocation, &found.displacements, &frame(along), 0, &[0.3, 0.5, 0.8]).unwrap();
+        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(along)), 0, &[0.3, 0.5, 0.8]).unwrap();
         discs.into_iter().map(move |d| (along, d))
     };
     [-0.9, -0.3, 0.0, 0.4, 0.8].into_iter().flat_map(at).collect()

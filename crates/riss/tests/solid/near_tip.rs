@@ -5,7 +5,7 @@
 use crate::boxes::{Box, Crack, HalfPlane, displacement_error, stress};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
 use riss::exact::{CrackFrontField, CrackTipField, ExactField};
-use riss::fracture::front_integrals;
+use riss::fracture::{DiscCut, front_integrals};
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Vector, Vector2, axis};
 use riss::model::{RigidMotion, Solid, SurfaceConditions, SurfacePoint, VectorField};
@@ -50,7 +50,7 @@ fn check_square(n: usize, seed: u64, allowed: f64) {
     let collocation =
         Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![front], CollocationSettings::default());
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
-    let discs = front_integrals(&collocation, &found.displacements, &frame(0.0), 0, &[0.3, 0.4, 0.6, 0.8]).unwrap();
+    let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(0.0)), 0, &[0.3, 0.4, 0.6, 0.8]).unwrap();
     let j = 1.25 / material().effective_young();
     for disc in discs {
         let errors = [disc.factors[0] - 1.0, disc.factors[1] - 0.5, 0.5 * (disc.j / j - 1.0)];
@@ -97,7 +97,7 @@ fn check_cuboid(n: usize, factors: [f64; 3], t_stress: f64, allowed: f64) {
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     assert!(displacement_error(&collocation, &found.displacements, exact) < 3.0 * allowed);
     for along in [0.0, 0.3, 1.0, 2.0, 3.3, 4.0] {
-        let discs = front_integrals(&collocation, &found.displacements, &frame(along), 0, &[3.0, 4.0, 6.0]).unwrap();
+        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(along)), 0, &[3.0, 4.0, 6.0]).unwrap();
         for disc in discs {
             let errors: [f64; 3] = std::array::from_fn(|m| disc.factors[m] - factors[m]);
             assert!(errors.iter().all(|e| e.abs() < allowed), "at {along}: {errors:?}");

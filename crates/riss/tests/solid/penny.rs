@@ -7,7 +7,7 @@
 
 use crate::boxes::{Random, push};
 use riss::approximation::{EnrichedFront, FrontEnds, FrontFrame, FrontLine};
-use riss::fracture::front_integrals;
+use riss::fracture::{DiscCut, front_integrals};
 use riss::geometry::obstacles::Opaque;
 use riss::material::{Elasticity, PlaneState};
 use riss::math::{Vector, axis};
@@ -119,7 +119,7 @@ fn check(planes: [SurfaceConditions<3>; 2], remote: [f64; 2], expected: impl Fn(
     let collocation = Collocation::new(solid, &cloud(h), Arc::new(Disc), vec![front], CollocationSettings::default());
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     for angle in [0.0, 0.3, 0.8, 1.2, FRAC_PI_2] {
-        let discs = front_integrals(&collocation, &found.displacements, &frame(angle), 0, &[0.3, 0.45, 0.6]).unwrap();
+        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(angle)), 0, &[0.3, 0.45, 0.6]).unwrap();
         let unit = (1.0 / PI).sqrt();
         let expected = expected(angle).map(|k| k * unit);
         let largest = expected.iter().fold(0.0f64, |m, k| m.max(k.abs()));

@@ -1,7 +1,7 @@
 //! Tests of constrained moving least squares.
 
 use super::*;
-use crate::approximation::front_functions::FrontEnds;
+use crate::approximation::front_functions::{FrontEnds, FrontLine};
 use crate::approximation::settings::WeightFunction;
 use crate::nodes::cloud::Place;
 
@@ -124,24 +124,24 @@ fn check_enriched<const D: usize>() {
         };
         vec![at(-1.0), at(1.0)]
     };
-    let front = EnrichedFront { line: FrontLine::new(frames, FrontEnds::Open), reach: 0.9 };
+    let front = EnrichedFront { line: FrontLine::new(frames, FrontEnds::Open), reach: 0.9, crack: None };
     let cloud = cloud::<D>(if D == 2 { 16 } else { 10 }, 0.2);
     let mls = ConstrainedMls::new(cloud, Arc::new(HalfPlane), vec![front], ConstrainedMlsSettings::default());
     let (mut buffer, mut shape) = Default::default();
     let mut compared = 0;
     for i in 0..mls.cloud().len() as u32 {
         let at = mls.cloud().positions[i as usize];
-        let [r, _] = frame.polar(at, at);
+        let [r, _] = frame.polar(at, 0.0);
         if !(0.02..0.85).contains(&r) || at.iter().any(|x| x.abs() > 0.8) {
             continue;
         }
         mls.at_node(i, at, &mut buffer, &mut shape).unwrap();
-        let jets = frame.jets(at, at);
+        let jets = frame.jets(at, 0.0);
         for (k, jet) in jets.iter().enumerate() {
             let (mut g, mut s) = (Vector::<D>::zeros(), Matrix::<D>::zeros());
             for (n, &j) in shape.neighbors.iter().enumerate() {
                 let p = mls.cloud().positions[j as usize];
-                let value = frame.values(p, p)[k];
+                let value = frame.values(p, 0.0)[k];
                 g += shape.gradients[n] * value;
                 s += shape.second_derivatives[n] * value;
             }

@@ -292,6 +292,12 @@ impl Wedge {
         a.cross(&b).norm().atan2(a.dot(&b))
     }
 
+    /// Unit normal of the plane of the sector, on the side of that of the surface.
+    pub fn flat_normal(&self) -> Vector3 {
+        let flat = self.sides[0].cross(&self.sides[1]).try_normalize(0.0).unwrap_or(self.normal);
+        if flat.dot(&self.normal) < 0.0 { -flat } else { flat }
+    }
+
     /// The part of the sector on the side of a plane through its point that `normal` points to.
     pub fn above(&self, normal: Vector3) -> Option<Self> {
         let [s, t] = self.sides.map(|d| d.dot(&normal));

@@ -7,6 +7,8 @@ use crate::math::Vector3;
 
 /// Surfaces are two sides of a wall if the cosine of the angle between them is larger.
 const PARALLEL: f64 = 0.9;
+/// Vertices of a plane surface are this near to its plane, over its size.
+const PLANE: f64 = 1e-9;
 
 /// The point of a surface that is closest to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +88,13 @@ impl Surface {
             }
         });
         best.map(|(_, foot)| foot)
+    }
+
+    /// Whether all of it lies in one plane.
+    pub fn is_plane(&self) -> bool {
+        let (origin, normal) = (self.corners(0)[0], self.normals()[0]);
+        let tolerance = PLANE * self.bounds().size().norm();
+        self.vertices().iter().all(|p| (p - origin).dot(&normal).abs() <= tolerance)
     }
 
     /// Least box around the surface.

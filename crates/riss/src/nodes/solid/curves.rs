@@ -43,6 +43,27 @@ pub(super) fn place(sites: &mut Sites<'_>, fronts: NodesOnFronts) {
     for chain in body.chains() {
         place_on_chain(sites, chain);
     }
+    for crack in 0..sites.cracks.len() {
+        place_on_folds(sites, crack as u32);
+    }
+}
+
+/// Nodes along the sharp edges of a crack inside the body, where the conditions of two plane faces meet.
+fn place_on_folds(sites: &mut Sites<'_>, crack: u32) {
+    let surface = &sites.cracks[crack as usize].surface;
+    for chain in surface.chains().iter().filter(|c| !c.is_rim) {
+        let points: Vec<Vector3> = chain.vertices.iter().map(|v| surface.vertices()[*v as usize]).collect();
+        for (k, t) in along(&points, false, [End::Front; 2], sites) {
+            let p = points[k] + (points[k + 1] - points[k]) * t;
+            let h = sites.spacing.at(p);
+            let clearance = Sites::clearance(h);
+            let is_free = sites.body.signed_distance(p) <= -clearance && !sites.is_near_front(p, clearance);
+            let Some(foot) = edge_foot(surface, [chain.vertices[k], chain.vertices[k + 1]], p) else { continue };
+            if is_free && sites.is_clear(p, h, super::CLOSENESS) {
+                sites.push(p, h, Stand::Face { crack, foot });
+            }
+        }
+    }
 }
 
 fn place_on_fronts(sites: &mut Sites<'_>) {

@@ -13,6 +13,12 @@ use std::f64::consts::PI;
 /// curvature, which clears the chord of four spacings, and no more than the second over the spacing.
 const LIFT: f64 = 2.0;
 const MOST_LIFT: f64 = 0.4;
+/// Normals of cracks are means over this far around a node, over its spacing: where triangles are larger, those of the
+/// plane triangles on which the nodes stand.
+const AROUND: f64 = 0.25;
+const AROUND_POINTS: usize = 8;
+/// Cosine of the angle of a fold from which its sides are two faces (0.5 rad).
+const SAME_FACE: f64 = 0.8776;
 /// Sectors narrower than this are no facets [rad].
 const NARROW: f64 = 1e-6;
 
@@ -32,7 +38,7 @@ pub(super) fn split(sites: &Sites<'_>, on_surfaces: usize) -> SolidCloud {
                 let wedges = surface.wedges(&foot, site.position);
                 let first = solid.cloud.len() as u32;
                 for (side, along) in [(Side::Positive, Along::Against), (Side::Negative, Along::Normal)] {
-                    let facets = face_facets(site, &wedges, crack, side, lift(surface, &foot, site, along));
+                    let facets = face_facets(surface, site, &wedges, crack, side, lift(surface, &foot, site, along));
                     push(&mut solid, site, facets);
                 }
                 solid.pairs.push(FacePair { crack, nodes: [first, first + 1] });
@@ -113,26 +119,54 @@ fn spread(wedges: &[&Wedge]) -> (f64, Vector3) {
     (angle, if is_all_around { Vector3::zeros() } else { middle.try_normalize(1e-9).unwrap_or_default() })
 }
 
-/// The facets of one face of a crack: one for each of its smooth pieces at the node.
-fn face_facets(site: &Site, wedges: &[Wedge], crack: u32, side: Side, shift: f64) -> Vec<(Facet<3>, f64)> {
+/// The facets of one face of a crack: one for each side of a fold.
+fn face_facets(
+    surface: &Surface,
+    site: &Site,
+    wedges: &[Wedge],
+    crack: u32,
+    side: Side,
+    shift: f64,
+) -> Vec<(Facet<3>, f64)> {
     let sign = match side {
         Side::Positive => -1.0,
         Side::Negative => 1.0,
     };
-    let mut patches: Vec<u32> = vec![];
-    wedges.iter().for_each(|w| {
-        if !patches.contains(&w.patch) {
-            patches.push(w.patch)
+    let mut pieces: Vec<(Vector3, Vec<&Wedge>)> = vec![];
+    for wedge in wedges {
+        let flat = wedge.flat_normal();
+        match pieces.iter_mut().find(|p| p.0.dot(&flat) > SAME_FACE) {
+            Some(piece) => piece.1.push(wedge),
+            None => pieces.push((flat, vec![wedge])),
         }
-    });
-    let one = |patch: &u32| {
-        let own: Vec<&Wedge> = wedges.iter().filter(|w| w.patch == *patch).collect();
+    }
+    let is_fold = pieces.len() > 1;
+    let one = |(flat, own): (Vector3, Vec<&Wedge>)| {
         let (angle, inside) = spread(&own);
-        let normal = own.iter().map(|w| w.normal * w.angle()).sum::<Vector3>().try_normalize(0.0)? * sign;
+        let normal = if is_fold {
+            own.iter().map(|w| w.flat_normal() * w.angle()).sum::<Vector3>().try_normalize(0.0)?
+        } else {
+            mean_normal(surface, flat, site)
+        } * sign;
         let sight = site.position + inside * SIGHT_SHIFT * site.spacing - normal * shift;
         (angle >= NARROW).then_some((Facet { surface: SurfaceId::Face { crack, side }, normal, sight, angle }, shift))
     };
-    patches.iter().filter_map(one).collect()
+    pieces.into_iter().filter_map(one).collect()
+}
+
+/// Normal of a crack around a node, which stands on a triangle with the normal `own`.
+///
+/// Normals that turn smoothly over whole triangles would turn faces that are plane: tractions on them would be wrong by
+/// half of a fold, however far away that is.
+fn mean_normal(surface: &Surface, own: Vector3, site: &Site) -> Vector3 {
+    let radius = AROUND * site.spacing;
+    let [x, y] = crate::geometry::surface::makers::across(own);
+    let around = (0..AROUND_POINTS).filter_map(|k| {
+        let (sin, cos) = (2.0 * PI * k as f64 / AROUND_POINTS as f64).sin_cos();
+        let foot = surface.closest_within(site.position + (x * cos + y * sin) * radius, 2.0 * radius)?;
+        Some(surface.normals()[foot.triangle as usize])
+    });
+    (own + around.filter(|n| n.dot(&own) > SAME_FACE).sum::<Vector3>()).normalize()
 }
 
 /// The two nodes where a crack meets the boundary.
@@ -140,7 +174,7 @@ fn split_mouth(sites: &Sites<'_>, site: &Site, foot: &Foot, crack: u32, solid: &
     let surface = &sites.cracks[crack as usize].surface;
     let wedges = sites.body.wedges(foot, site.position);
     let on_crack = surface.closest(site.position);
-    let normal = surface.normal_at(on_crack.triangle, on_crack.position);
+    let normal = mean_normal(surface, surface.normals()[on_crack.triangle as usize], site);
     let first = solid.cloud.len() as u32;
     for (side, up, along) in [(Side::Positive, normal, Along::Against), (Side::Negative, -normal, Along::Normal)] {
         let above: Vec<Wedge> = wedges.iter().filter_map(|w| w.above(up)).collect();
@@ -149,7 +183,7 @@ fn split_mouth(sites: &Sites<'_>, site: &Site, foot: &Foot, crack: u32, solid: &
         // The part of the crack behind all pieces of the boundary.
         let inside =
             wedges.iter().fold(around.to_vec(), |left, w| left.iter().filter_map(|c| c.above(-w.normal)).collect());
-        facets.extend(face_facets(site, &inside, crack, side, lift(surface, &on_crack, site, along)));
+        facets.extend(face_facets(surface, site, &inside, crack, side, lift(surface, &on_crack, site, along)));
         push(solid, site, facets);
     }
     solid.pairs.push(FacePair { crack, nodes: [first, first + 1] });
