@@ -46,7 +46,7 @@ fn main() -> Result<(), Failure> {
         seed: argument(5, 7.0) as u64,
         ..Box::cube(1)
     };
-    let frame = |y: f64| FrontFrame { position: axis::<3>(1) * y, ahead, normal, curvature: 0.0 };
+    let frame = |y: f64| FrontFrame { position: axis::<3>(1) * y, ahead, normal, curvature: 0.0 , normal_curvature: 0.0};
     let line = FrontLine::new(vec![frame(0.0), frame(b)], FrontEnds::Open);
     let reach = argument(3, -1.0);
     let mut front = EnrichedFront::new(line, body.spacing().max());

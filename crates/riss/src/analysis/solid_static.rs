@@ -26,6 +26,9 @@ const DISCS: [f64; 3] = [0.5, 0.75, 1.0];
 const BEND: f64 = 0.6;
 const LEAST_REACH: f64 = 8.0;
 
+/// Length to each side over which the bend of a front out of its crack is taken, over the spacing.
+const ALONG: f64 = 2.0;
+
 /// Numerical choices for a solid.
 #[derive(Clone, Debug)]
 pub struct SolidSettings {
@@ -186,7 +189,11 @@ fn enriched(crack: &CrackSurface, settings: &SolidSettings) -> Vec<EnrichedFront
     let one = |front: &CrackFront| {
         let ends = if front.is_closed { FrontEnds::Closed } else { FrontEnds::Open };
         let least = front.points.iter().map(|p| settings.spacing.at(p.position)).fold(f64::INFINITY, f64::min);
-        let line = FrontLine::new(front.points.iter().map(frame).collect(), ends);
+        let bent = |p: &FrontPoint| {
+            let normal_curvature = if sides.is_some() { front.normal_curvature(p, ALONG * least) } else { 0.0 };
+            FrontFrame { normal_curvature, ..frame(p) }
+        };
+        let line = FrontLine::new(front.points.iter().map(bent).collect(), ends);
         let wanted = settings.collocation.front_reach * least;
         // The functions of an arc know nothing of its other side: a penny-shaped crack loses 0.5 % if they reach its middle.
         let bend = front.points.iter().map(|p| p.curvature.abs()).fold(f64::MIN_POSITIVE, f64::max);
@@ -197,7 +204,8 @@ fn enriched(crack: &CrackSurface, settings: &SolidSettings) -> Vec<EnrichedFront
 }
 
 fn frame(p: &FrontPoint) -> FrontFrame<3> {
-    FrontFrame { position: p.position, ahead: p.ahead, normal: p.normal, curvature: p.curvature }
+    let FrontPoint { position, ahead, normal, curvature, .. } = *p;
+    FrontFrame { position, ahead, normal, curvature, normal_curvature: 0.0 }
 }
 
 /// Where a front is evaluated: evenly along it, half a step from its ends.

@@ -19,6 +19,19 @@ pub struct FrontFrame<const D: usize> {
     pub normal: Vector<D>,
     /// Curvature of the front in the plane of the crack [1/length]; positive if the crack is convex.
     pub curvature: f64,
+    /// Curvature of the front out of that plane [1/length]; positive if it bends away from the normal, zero for a plane
+    /// crack.
+    pub normal_curvature: f64,
+}
+
+/// The arc of a front near a frame: it bends in the plane of the tangent and of `axis`, away from this.
+struct Arc<const D: usize> {
+    curvature: f64,
+    axis: Vector<D>,
+    /// Normal to the plane of the arc.
+    binormal: Vector<D>,
+    /// Cosine and sine of the angle from `ahead` to `axis`.
+    turn: [f64; 2],
 }
 
 /// A function with first and second derivatives.
@@ -40,32 +53,48 @@ impl<const D: usize> FrontFrame<D> {
         if D == 3 { Vector::from_fn(|i, _| cross(i)) } else { Vector::zeros() }
     }
 
+    /// The arc of the front.
+    #[inline]
+    fn arc(&self) -> Arc<D> {
+        if self.normal_curvature == 0.0 {
+            return Arc { curvature: self.curvature, axis: self.ahead, binormal: self.normal, turn: [1.0, 0.0] };
+        }
+        let curvature = self.curvature.hypot(self.normal_curvature);
+        let [c, s] = [self.curvature / curvature, self.normal_curvature / curvature];
+        let (axis, binormal) = (self.ahead * c + self.normal * s, self.normal * c - self.ahead * s);
+        Arc { curvature, axis, binormal, turn: [c, s] }
+    }
+
     /// Distances from the front along the crack and normal to it [length]: `√(x1² + x2²)` is that from the arc.
     #[inline]
     pub fn plane(&self, at: Vector<D>) -> [f64; 2] {
         let d = at - self.position;
-        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
-        if self.curvature == 0.0 {
+        let Arc { curvature, axis, binormal, turn: [c, s] } = self.arc();
+        let (a, n) = (d.dot(&axis), d.dot(&binormal));
+        if curvature == 0.0 {
             return [a, n];
         }
         let in_plane2 = (d.norm_squared() - n * n).max(0.0);
-        let q = self.curvature * (2.0 * a + self.curvature * in_plane2);
-        [(2.0 * a + self.curvature * in_plane2) / (1.0 + (1.0 + q).max(0.0).sqrt()), n]
+        let q = curvature * (2.0 * a + curvature * in_plane2);
+        let x = (2.0 * a + curvature * in_plane2) / (1.0 + (1.0 + q).max(0.0).sqrt());
+        [x * c - n * s, x * s + n * c]
     }
 
     /// The frame where the plane normal to the arc holds a point.
     fn slid_to(&self, at: Vector<D>) -> Self {
         let d = at - self.position;
-        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
-        let along = d - self.ahead * a - self.normal * n;
-        let reach = 1.0 + self.curvature * a;
-        let stretch = reach.hypot(self.curvature * along.norm());
+        let Arc { curvature, axis, binormal, turn: [c, s] } = self.arc();
+        let (a, n) = (d.dot(&axis), d.dot(&binormal));
+        let along = d - axis * a - binormal * n;
+        let reach = 1.0 + curvature * a;
+        let stretch = reach.hypot(curvature * along.norm());
         if reach <= 0.0 {
             return *self;
         }
-        let ahead = (self.ahead * reach + along * self.curvature) / stretch;
-        let drop = self.curvature * along.norm_squared() / (stretch * (stretch + reach));
-        Self { position: self.position + along / stretch - self.ahead * drop, ahead, ..*self }
+        let slid = (axis * reach + along * curvature) / stretch;
+        let drop = curvature * along.norm_squared() / (stretch * (stretch + reach));
+        let position = self.position + along / stretch - axis * drop;
+        Self { position, ahead: slid * c - binormal * s, normal: slid * s + binormal * c, ..*self }
     }
 
     /// Distance and angle, this on the sheet nearest to a known angle `near`: 0 for places that are not on or behind a
@@ -88,23 +117,26 @@ impl<const D: usize> FrontFrame<D> {
         let [r, theta] = self.polar(at, near);
         let (sin, cos) = theta.sin_cos();
         let d = at - self.position;
-        let (a, n) = (d.dot(&self.ahead), d.dot(&self.normal));
-        let along = d - self.ahead * a - self.normal * n;
-        let q = self.curvature * (2.0 * a + self.curvature * (a * a + along.norm_squared()));
+        let Arc { curvature, axis, binormal, turn: [c, s] } = self.arc();
+        let (a, n) = (d.dot(&axis), d.dot(&binormal));
+        let along = d - axis * a - binormal * n;
+        let q = curvature * (2.0 * a + curvature * (a * a + along.norm_squared()));
         let stretch = (1.0 + q).max(f64::MIN_POSITIVE).sqrt();
-        let first = (self.ahead * (1.0 + self.curvature * a) + along * self.curvature) / stretch;
+        let outward = (axis * (1.0 + curvature * a) + along * curvature) / stretch;
+        let (first, second) = (outward * c - binormal * s, outward * s + binormal * c);
         // The arc bends in its own plane only.
-        let plane = Matrix::identity() - first * first.transpose() - self.normal * self.normal.transpose();
-        let bend = plane * (self.curvature / stretch);
-        let (radial, across) = (first * cos + self.normal * sin, self.normal * cos - first * sin);
+        let plane = Matrix::identity() - outward * outward.transpose() - binormal * binormal.transpose();
+        let bend = plane * (curvature / stretch);
+        let (radial, across) = (first * cos + second * sin, second * cos - first * sin);
+        let (by_radius, by_angle) = (radial.dot(&outward), across.dot(&outward));
         TipFunctions::Full.angular(theta).map(|[g, g1, g2]| {
             let slope = (radial * (0.5 * g) + across * g1) / r.sqrt();
             let mixed = radial * across.transpose();
-            let second = radial * radial.transpose() * (-0.25 * g)
+            let curved = radial * radial.transpose() * (-0.25 * g)
                 + (mixed + mixed.transpose()) * (-0.5 * g1)
                 + across * across.transpose() * (g2 + 0.5 * g);
-            let by_first = (0.5 * g * cos - g1 * sin) / r.sqrt();
-            Jet { value: r.sqrt() * g, gradient: slope, second_derivatives: second / (r * r.sqrt()) + bend * by_first }
+            let outwards = (0.5 * g * by_radius + g1 * by_angle) / r.sqrt();
+            Jet { value: r.sqrt() * g, gradient: slope, second_derivatives: curved / (r * r.sqrt()) + bend * outwards }
         })
     }
 }
@@ -177,8 +209,10 @@ fn between<const D: usize>(a: &FrontFrame<D>, b: &FrontFrame<D>, t: f64) -> Fron
     let normal = (a.normal * (1.0 - t) + b.normal * t).normalize();
     let mean = a.ahead * (1.0 - t) + b.ahead * t;
     let ahead = (mean - normal * mean.dot(&normal)).normalize();
-    let rise = 0.5 * curvature * chord.norm_squared() * t * (1.0 - t);
-    FrontFrame { position: a.position + chord * t + ahead * rise, ahead, normal, curvature }
+    let normal_curvature = a.normal_curvature * (1.0 - t) + b.normal_curvature * t;
+    let rise = 0.5 * chord.norm_squared() * t * (1.0 - t);
+    let position = a.position + chord * t + (ahead * curvature + normal * normal_curvature) * rise;
+    FrontFrame { position, ahead, normal, curvature, normal_curvature }
 }
 
 #[cfg(test)]
@@ -189,7 +223,7 @@ mod tests {
     fn frame(curvature: f64) -> FrontFrame<3> {
         let ahead = Vector::<3>::new(0.6, 0.8, 0.0);
         let normal = Vector::<3>::new(0.0, 0.0, 1.0);
-        FrontFrame { position: Vector::<3>::new(0.1, -0.2, 0.3), ahead, normal, curvature }
+        FrontFrame { position: Vector::<3>::new(0.1, -0.2, 0.3), ahead, normal, curvature, normal_curvature: 0.0 }
     }
 
     #[test]
@@ -205,10 +239,30 @@ mod tests {
         }
     }
 
+    /// The front of a spherical cap: distance and angle in the planes through its axis are the same all around.
+    #[test]
+    fn the_front_of_a_cap_is_a_circle() {
+        let (radius, dip) = (2.0f64, 0.5f64);
+        let at = |angle: f64, r: f64, z: f64| Vector::<3>::new(r * angle.cos(), r * angle.sin(), z);
+        let (ahead, normal) = (at(0.0, dip.cos(), -dip.sin()), at(0.0, dip.sin(), dip.cos()));
+        let (curvature, normal_curvature) = (dip.cos() / radius, dip.sin() / radius);
+        let f = FrontFrame { position: at(0.0, radius, 0.0), ahead, normal, curvature, normal_curvature };
+        for angle in [0.0, 0.1, -0.4] {
+            for (r, z) in [(2.2, 0.3), (1.7, -0.2)] {
+                let [x, y] = f.plane(at(angle, r, z));
+                let d = at(0.0, r - radius, z);
+                assert!((x - d.dot(&ahead)).abs() < 1e-14 && (y - d.dot(&normal)).abs() < 1e-14, "{x} {y}");
+                let slid = f.slid_to(at(angle, r, z));
+                assert!((slid.position - at(angle, radius, 0.0)).norm() < 1e-14);
+                assert!((slid.ahead - at(angle, dip.cos(), -dip.sin())).norm() < 1e-14);
+            }
+        }
+    }
+
     #[test]
     fn derivatives_are_those_of_finite_differences() {
-        for curvature in [0.0, 0.5, -0.4] {
-            let f = frame(curvature);
+        for (curvature, normal_curvature) in [(0.0, 0.0), (0.5, 0.0), (-0.4, 0.0), (0.5, 0.3), (-0.4, 0.6), (0.0, -0.5)] {
+            let f = FrontFrame { normal_curvature, ..frame(curvature) };
             for at in
                 [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1), Vector::<3>::new(0.3, -0.5, 0.2)]
             {
@@ -234,7 +288,7 @@ mod tests {
             .map(|k| {
                 let (s, c) = (TAU * k as f64 / 24.0).sin_cos();
                 let ahead = Vector::<3>::new(c, s, 0.0);
-                FrontFrame { position: ahead * 2.0, ahead, normal: Vector::<3>::z(), curvature: 0.0 }
+                FrontFrame { position: ahead * 2.0, ahead, normal: Vector::<3>::z(), curvature: 0.0, normal_curvature: 0.0 }
             })
             .collect();
         let front = FrontLine::new(frames, FrontEnds::Closed);

@@ -88,6 +88,17 @@ impl CrackFront {
         self.points.iter().map(|p| p.curvature.abs()).filter(|c| c * step < CORNER).fold(0.0, f64::max)
     }
 
+    /// Curvature out of the surface of the crack at one of its points, from places this far to both sides [1/length]; positive
+    /// if the front bends away from the normal.
+    pub fn normal_curvature(&self, p: &FrontPoint, reach: f64) -> f64 {
+        let reach = if self.is_closed { reach.min(0.25 * self.length) } else { reach.min(0.5 * self.length) };
+        let s = if self.is_closed { p.s } else { p.s.clamp(reach, self.length - reach) };
+        let [before, at, after] = [s - reach, s, s + reach].map(|s| self.at(s).position);
+        let bend = (before - at) + (after - at);
+        let chord = 0.25 * (after - before).norm_squared();
+        if chord > 0.0 { -bend.dot(&p.normal) / chord } else { 0.0 }
+    }
+
     /// `n` points evenly along the front: with both ends if it is open.
     pub fn sampled(&self, n: usize) -> Vec<FrontPoint> {
         let pieces = if self.is_closed { n } else { n.max(2) - 1 };
@@ -120,6 +131,24 @@ fn curvature(back: Vector3, forth: Vector3, ahead: Vector3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A circle of radius 2 on a cone of half a radian.
+    #[test]
+    fn the_front_of_a_cone_bends_out_of_it() {
+        let n = 200;
+        let around = |k: usize, r: f64, z: f64| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
+            Vector3::new(r * cos, r * sin, z)
+        };
+        let (sin, cos) = 0.5f64.sin_cos();
+        let positions: Vec<Vector3> = (0..n).map(|k| around(k, 2.0, 0.0)).collect();
+        let normals: Vec<Vector3> = (0..n).map(|k| around(k, sin, cos)).collect();
+        let front = CrackFront::new(&positions, &normals, true);
+        for p in &front.points {
+            let found = front.normal_curvature(p, 0.2);
+            assert!((found - 0.5 * sin).abs() < 1e-3, "{found}");
+        }
+    }
 
     /// A front that turns around on itself, as between flat triangles: its axes are still unit vectors.
     #[test]

@@ -15,7 +15,7 @@ use riss::system::{Collocation, CollocationSettings};
 use std::sync::Arc;
 
 fn frame(along: f64) -> FrontFrame<3> {
-    FrontFrame { position: axis::<3>(1) * along, ahead: axis(0), normal: axis(2), curvature: 0.0 }
+    FrontFrame { position: axis::<3>(1) * along, ahead: axis(0), normal: axis(2), curvature: 0.0 , normal_curvature: 0.0}
 }
 
 fn crack(factors: [f64; 3], t_stress: f64) -> CrackFrontField {

@@ -32,7 +32,7 @@ fn frame<const D: usize>(along: f64) -> FrontFrame<D> {
     if D == 3 {
         position[1] = along;
     }
-    FrontFrame { position, ahead: axis(0), normal: axis(D - 1), curvature: 0.0 }
+    FrontFrame { position, ahead: axis(0), normal: axis(D - 1), curvature: 0.0 , normal_curvature: 0.0}
 }
 
 /// Both modes in the square of half side 1 with `n` steps; errors are relative to the larger factor.

@@ -94,7 +94,7 @@ fn cloud(h: f64) -> Cloud<3> {
 
 fn frame(angle: f64) -> FrontFrame<3> {
     let ahead = Vector::<3>::new(angle.cos(), angle.sin(), 0.0);
-    FrontFrame { position: ahead, ahead, normal: axis(2), curvature: 1.0 }
+    FrontFrame { position: ahead, ahead, normal: axis(2), curvature: 1.0 , normal_curvature: 0.0}
 }
 
 /// Conditions on x = 0 and y = 0, the remote stress, and the factors over √(a/π) at an angle.

@@ -97,6 +97,18 @@ impl Surface {
         self.vertices().iter().all(|p| (p - origin).dot(&normal).abs() <= tolerance)
     }
 
+    /// Edges between triangles whose normals differ by more than an angle, with a triangle and its number there.
+    ///
+    /// - `angle`: [rad]
+    pub fn folds(&self, angle: f64) -> impl Iterator<Item = (u32, usize)> + '_ {
+        let is_fold = move |t: u32, k: usize| {
+            let other = self.across(t, k).filter(|o| t < *o)?;
+            let (a, b) = (self.normals()[t as usize], self.normals()[other as usize]);
+            (a.cross(&b).norm().atan2(a.dot(&b)) > angle).then_some((t, k))
+        };
+        (0..self.triangles().len() as u32).flat_map(move |t| (0..3).filter_map(move |k| is_fold(t, k)))
+    }
+
     /// Least box around the surface.
     pub fn bounds(&self) -> Aabb<3> {
         self.bounds

@@ -1,6 +1,6 @@
 //! Nodes along lines: mouths of cracks, sharp edges of the boundary, crack fronts.
 
-use super::NodesOnFronts;
+use super::{CLOSENESS, NodesOnFronts};
 use super::sites::{Sites, Stand};
 use crate::crack::{CrackSurface, Mouths};
 use crate::geometry::surface::{Chain, Foot, Surface};
@@ -48,18 +48,21 @@ pub(super) fn place(sites: &mut Sites<'_>, fronts: NodesOnFronts) {
     }
 }
 
-/// Nodes along the sharp edges of a crack inside the body, where the conditions of two plane faces meet.
+/// Nodes along the folds of a crack inside the body, where the conditions of two plane faces meet.
 fn place_on_folds(sites: &mut Sites<'_>, crack: u32) {
     let surface = &sites.cracks[crack as usize].surface;
-    for chain in surface.chains().iter().filter(|c| !c.is_rim) {
-        let points: Vec<Vector3> = chain.vertices.iter().map(|v| surface.vertices()[*v as usize]).collect();
-        for (k, t) in along(&points, false, [End::Front; 2], sites) {
-            let p = points[k] + (points[k + 1] - points[k]) * t;
+    for (triangle, k) in surface.folds(super::FOLD) {
+        let corners = surface.corners(triangle);
+        let ends = [corners[k], corners[(k + 1) % 3]];
+        let mut places = along(&ends, false, [End::Node; 2], sites);
+        places.extend([(0, 0.0), (0, 1.0)]);
+        for (_, t) in places {
+            let p = ends[0] + (ends[1] - ends[0]) * t;
+            let Some(foot) = surface.locate(p, SAME * sites.size()) else { continue };
             let h = sites.spacing.at(p);
             let clearance = Sites::clearance(h);
             let is_free = sites.body.signed_distance(p) <= -clearance && !sites.is_near_front(p, clearance);
-            let Some(foot) = edge_foot(surface, [chain.vertices[k], chain.vertices[k + 1]], p) else { continue };
-            if is_free && sites.is_clear(p, h, super::CLOSENESS) {
+            if is_free && sites.is_clear(p, h, CLOSENESS) {
                 sites.push(p, h, Stand::Face { crack, foot });
             }
         }

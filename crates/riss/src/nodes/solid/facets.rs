@@ -17,8 +17,6 @@ const MOST_LIFT: f64 = 0.4;
 /// plane triangles on which the nodes stand.
 const AROUND: f64 = 0.25;
 const AROUND_POINTS: usize = 8;
-/// Cosine of the angle of a fold from which its sides are two faces (0.5 rad).
-const SAME_FACE: f64 = 0.8776;
 /// Sectors narrower than this are no facets [rad].
 const NARROW: f64 = 1e-6;
 
@@ -135,7 +133,7 @@ fn face_facets(
     let mut pieces: Vec<(Vector3, Vec<&Wedge>)> = vec![];
     for wedge in wedges {
         let flat = wedge.flat_normal();
-        match pieces.iter_mut().find(|p| p.0.dot(&flat) > SAME_FACE) {
+        match pieces.iter_mut().find(|p| is_one_face(&p.0, &flat)) {
             Some(piece) => piece.1.push(wedge),
             None => pieces.push((flat, vec![wedge])),
         }
@@ -154,6 +152,11 @@ fn face_facets(
     pieces.into_iter().filter_map(one).collect()
 }
 
+/// Whether two normals are those of one face of a crack.
+fn is_one_face(a: &Vector3, b: &Vector3) -> bool {
+    a.cross(b).norm().atan2(a.dot(b)) <= super::FOLD
+}
+
 /// Normal of a crack around a node, which stands on a triangle with the normal `own`.
 ///
 /// Normals that turn smoothly over whole triangles would turn faces that are plane: tractions on them would be wrong by
@@ -166,7 +169,7 @@ fn mean_normal(surface: &Surface, own: Vector3, site: &Site) -> Vector3 {
         let foot = surface.closest_within(site.position + (x * cos + y * sin) * radius, 2.0 * radius)?;
         Some(surface.normals()[foot.triangle as usize])
     });
-    (own + around.filter(|n| n.dot(&own) > SAME_FACE).sum::<Vector3>()).normalize()
+    (own + around.filter(|n| is_one_face(n, &own)).sum::<Vector3>()).normalize()
 }
 
 /// The two nodes where a crack meets the boundary.

@@ -6,6 +6,10 @@ use crate::geometry::triangle::{self, Triangle};
 use crate::math::Vector3;
 use crate::nodes::source_tree::SourceTree;
 
+/// Spacing at folds of a crack over that at its front. Stresses at their hollow side are infinite too: with 2.5, K_I of a crack
+/// with a kink of 45 degrees, as long as half of it, is off by 12 %, with 1.6 by 0.2 %.
+const AT_FOLD: f64 = 1.5;
+
 /// A spacing that every point can be asked for.
 #[derive(Clone, Debug)]
 pub struct SolidSpacing {
@@ -78,6 +82,11 @@ impl SpacingPlan {
         for (crack, source) in cracks.iter().zip(sources) {
             let pieces = crack.fronts.iter().flat_map(|f| f.segments().collect::<Vec<_>>());
             regions.extend(pieces.map(|s| (Region::Segment(s), self.at_fronts[*source])));
+            let fold = |(t, k): (u32, usize)| {
+                let corners = crack.surface.corners(t);
+                (Region::Segment([corners[k], corners[(k + 1) % 3]]), AT_FOLD * self.at_fronts[*source])
+            };
+            regions.extend(crack.surface.folds(super::FOLD).map(fold));
         }
         regions.extend(&self.regions);
         regions.retain(|r| r.1 < self.largest);
