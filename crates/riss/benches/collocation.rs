@@ -64,7 +64,13 @@ fn bench(c: &mut Criterion) {
     group.bench_function("solve", |b| b.iter(|| black_box(collocation.solve(&system).unwrap())));
 
     let found = collocation.solve(&system).unwrap().displacements;
-    let frame = FrontFrame { position: axis::<3>(1) * 2.0, ahead: axis(0), normal: axis(2), curvature: 0.0 , normal_curvature: 0.0};
+    let frame = FrontFrame {
+        position: axis::<3>(1) * 2.0,
+        ahead: axis(0),
+        normal: axis(2),
+        curvature: 0.0,
+        normal_curvature: 0.0,
+    };
     group.throughput(Throughput::Elements(1));
     group.bench_function("factors_of_a_disc", |b| {
         b.iter(|| black_box(front_integrals(&collocation, &found, &DiscCut::plane(&frame), 0, &[4.0]).unwrap()));

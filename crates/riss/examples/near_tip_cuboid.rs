@@ -46,7 +46,8 @@ fn main() -> Result<(), Failure> {
         seed: argument(5, 7.0) as u64,
         ..Box::cube(1)
     };
-    let frame = |y: f64| FrontFrame { position: axis::<3>(1) * y, ahead, normal, curvature: 0.0 , normal_curvature: 0.0};
+    let frame =
+        |y: f64| FrontFrame { position: axis::<3>(1) * y, ahead, normal, curvature: 0.0, normal_curvature: 0.0 };
     let line = FrontLine::new(vec![frame(0.0), frame(b)], FrontEnds::Open);
     let reach = argument(3, -1.0);
     let mut front = EnrichedFront::new(line, body.spacing().max());
@@ -74,7 +75,8 @@ fn main() -> Result<(), Failure> {
     let (start, before) = (Instant::now(), processor());
     for k in 0..=8 {
         let y = b * f64::from(k) / 8.0;
-        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(y)), 0, &[2.0, 3.0, 4.0, 6.0])?;
+        let discs =
+            front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(y)), 0, &[2.0, 3.0, 4.0, 6.0])?;
         let errors: Vec<String> = discs.iter().map(|d| format!("{:+.4} %", 100.0 * (d.factors[0] - 1.0))).collect();
         println!("K_I at y = {y:.1}: {}", errors.join(" "));
     }

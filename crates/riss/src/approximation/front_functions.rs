@@ -261,7 +261,8 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_finite_differences() {
-        for (curvature, normal_curvature) in [(0.0, 0.0), (0.5, 0.0), (-0.4, 0.0), (0.5, 0.3), (-0.4, 0.6), (0.0, -0.5)] {
+        for (curvature, normal_curvature) in [(0.0, 0.0), (0.5, 0.0), (-0.4, 0.0), (0.5, 0.3), (-0.4, 0.6), (0.0, -0.5)]
+        {
             let f = FrontFrame { normal_curvature, ..frame(curvature) };
             for at in
                 [Vector::<3>::new(0.5, 0.1, 0.7), Vector::<3>::new(-0.3, 0.4, 0.1), Vector::<3>::new(0.3, -0.5, 0.2)]
@@ -288,7 +289,13 @@ mod tests {
             .map(|k| {
                 let (s, c) = (TAU * k as f64 / 24.0).sin_cos();
                 let ahead = Vector::<3>::new(c, s, 0.0);
-                FrontFrame { position: ahead * 2.0, ahead, normal: Vector::<3>::z(), curvature: 0.0, normal_curvature: 0.0 }
+                FrontFrame {
+                    position: ahead * 2.0,
+                    ahead,
+                    normal: Vector::<3>::z(),
+                    curvature: 0.0,
+                    normal_curvature: 0.0,
+                }
             })
             .collect();
         let front = FrontLine::new(frames, FrontEnds::Closed);

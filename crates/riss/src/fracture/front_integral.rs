@@ -269,9 +269,10 @@ impl<const D: usize> Disc<'_, D> {
                 let length = normal.norm();
                 let normal = normal / length;
                 let sight = position - normal * (OFF * radius);
-                let traction = solid.faces.get(self.crack).map_or(Vector::zeros(), |f| {
-                    turn(f.value(&SurfacePoint { position, normal, sight }))
-                });
+                let traction = solid
+                    .faces
+                    .get(self.crack)
+                    .map_or(Vector::zeros(), |f| turn(f.value(&SurfacePoint { position, normal, sight })));
                 let (normal, share) = (turn(normal), weight * length * q);
                 let state = self.state(position, sight, &mut buffer)?;
                 let energy = 0.5 * state.stress.dot(&state.gradient);

@@ -74,7 +74,9 @@ impl<const D: usize> NodeConditions<D> {
             self.terms.push(StrongTerm { equation: Strong::Equilibrium, load, sight });
             return;
         }
-        if is_front && settings.front_nodes == FrontNodes::Fitted {
+        let is_fitted = (is_front && settings.front_nodes == FrontNodes::Fitted)
+            || (settings.concave_corners == ConcaveCorners::Averaged && is_fold(position, facets));
+        if is_fitted {
             self.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
             return;
         }
@@ -153,6 +155,15 @@ fn traction<'a, const D: usize>(solid: &'a Solid<D>, facet: &Facet<D>) -> &'a Ve
         SurfaceId::Part(i) => &solid.parts[i as usize].traction,
         SurfaceId::Face { crack, .. } => &solid.faces[crack as usize],
     }
+}
+
+/// Whether a node stands on a fold of a crack, on the side where the material turns by more than half a circle.
+///
+/// Equations away from the fold hold for fields that are more singular than that of the corner too; what shuts them out at
+/// fronts does so here.
+fn is_fold<const D: usize>(position: Vector<D>, facets: &[Facet<D>]) -> bool {
+    let is_face = |f: &Facet<D>| matches!(f.surface, SurfaceId::Face { .. });
+    facets.len() > 1 && facets.iter().all(is_face) && is_concave(position, facets)
 }
 
 /// Whether the material behind one facet rises above another.

@@ -15,7 +15,13 @@ use riss::system::{Collocation, CollocationSettings};
 use std::sync::Arc;
 
 fn frame(along: f64) -> FrontFrame<3> {
-    FrontFrame { position: axis::<3>(1) * along, ahead: axis(0), normal: axis(2), curvature: 0.0 , normal_curvature: 0.0}
+    FrontFrame {
+        position: axis::<3>(1) * along,
+        ahead: axis(0),
+        normal: axis(2),
+        curvature: 0.0,
+        normal_curvature: 0.0,
+    }
 }
 
 fn crack(factors: [f64; 3], t_stress: f64) -> CrackFrontField {
@@ -42,7 +48,9 @@ fn solve(n: usize, crack: CrackFrontField, smooth: Power<3>) -> Vec<(f64, FrontI
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     assert!(displacement_error(&collocation, &found.displacements, exact) < 0.01);
     let at = |along: f64| {
-        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(along)), 0, &[0.3, 0.5, 0.8]).unwrap();
+        let discs =
+            front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(along)), 0, &[0.3, 0.5, 0.8])
+                .unwrap();
         discs.into_iter().map(move |d| (along, d))
     };
     [-0.9, -0.3, 0.0, 0.4, 0.8].into_iter().flat_map(at).collect()

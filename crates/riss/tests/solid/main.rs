@@ -1,5 +1,6 @@
 //! Point collocation of elastic solids against closed forms.
 
+mod bent;
 mod boxes;
 mod cavity;
 mod convergence;

@@ -32,7 +32,7 @@ fn frame<const D: usize>(along: f64) -> FrontFrame<D> {
     if D == 3 {
         position[1] = along;
     }
-    FrontFrame { position, ahead: axis(0), normal: axis(D - 1), curvature: 0.0 , normal_curvature: 0.0}
+    FrontFrame { position, ahead: axis(0), normal: axis(D - 1), curvature: 0.0, normal_curvature: 0.0 }
 }
 
 /// Both modes in the square of half side 1 with `n` steps; errors are relative to the larger factor.
@@ -50,7 +50,9 @@ fn check_square(n: usize, seed: u64, allowed: f64) {
     let collocation =
         Collocation::new(solid, &body.cloud(), Arc::new(HalfPlane), vec![front], CollocationSettings::default());
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
-    let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(0.0)), 0, &[0.3, 0.4, 0.6, 0.8]).unwrap();
+    let discs =
+        front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(0.0)), 0, &[0.3, 0.4, 0.6, 0.8])
+            .unwrap();
     let j = 1.25 / material().effective_young();
     for disc in discs {
         let errors = [disc.factors[0] - 1.0, disc.factors[1] - 0.5, 0.5 * (disc.j / j - 1.0)];
@@ -97,7 +99,9 @@ fn check_cuboid(n: usize, factors: [f64; 3], t_stress: f64, allowed: f64) {
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     assert!(displacement_error(&collocation, &found.displacements, exact) < 3.0 * allowed);
     for along in [0.0, 0.3, 1.0, 2.0, 3.3, 4.0] {
-        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(along)), 0, &[3.0, 4.0, 6.0]).unwrap();
+        let discs =
+            front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(along)), 0, &[3.0, 4.0, 6.0])
+                .unwrap();
         for disc in discs {
             let errors: [f64; 3] = std::array::from_fn(|m| disc.factors[m] - factors[m]);
             assert!(errors.iter().all(|e| e.abs() < allowed), "at {along}: {errors:?}");

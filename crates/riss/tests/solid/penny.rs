@@ -94,7 +94,7 @@ fn cloud(h: f64) -> Cloud<3> {
 
 fn frame(angle: f64) -> FrontFrame<3> {
     let ahead = Vector::<3>::new(angle.cos(), angle.sin(), 0.0);
-    FrontFrame { position: ahead, ahead, normal: axis(2), curvature: 1.0 , normal_curvature: 0.0}
+    FrontFrame { position: ahead, ahead, normal: axis(2), curvature: 1.0, normal_curvature: 0.0 }
 }
 
 /// Conditions on x = 0 and y = 0, the remote stress, and the factors over √(a/π) at an angle.
@@ -119,7 +119,9 @@ fn check(planes: [SurfaceConditions<3>; 2], remote: [f64; 2], expected: impl Fn(
     let collocation = Collocation::new(solid, &cloud(h), Arc::new(Disc), vec![front], CollocationSettings::default());
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     for angle in [0.0, 0.3, 0.8, 1.2, FRAC_PI_2] {
-        let discs = front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(angle)), 0, &[0.3, 0.45, 0.6]).unwrap();
+        let discs =
+            front_integrals(&collocation, &found.displacements, &DiscCut::plane(&frame(angle)), 0, &[0.3, 0.45, 0.6])
+                .unwrap();
         let unit = (1.0 / PI).sqrt();
         let expected = expected(angle).map(|k| k * unit);
         let largest = expected.iter().fold(0.0f64, |m, k| m.max(k.abs()));

@@ -17,7 +17,7 @@ const ANGLES: [f64; 7] = [-1.2, -0.8, -0.4, 0.0, 0.4, 0.8, 1.2];
 /// From this far ahead, over the increment, places are looked at.
 const EYE: f64 = 0.02;
 
-/// Turns smaller than this are noise of the nodes, which would make the crack wavy: the front goes straight on [rad].
+/// Turns smaller than this are noise of the nodes: the front goes straight on, and plane cracks stay plane [rad].
 const STEADY: f64 = 0.01;
 /// Ends of fronts look from this far inside the body, over the increment.
 const INSIDE: f64 = 0.1;

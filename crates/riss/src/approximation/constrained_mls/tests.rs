@@ -111,7 +111,7 @@ fn check_enriched<const D: usize>() {
     ahead[0] = 1.0;
     let mut normal = Vector::<D>::zeros();
     normal[D - 1] = 1.0;
-    let frame = FrontFrame { position: Vector::zeros(), ahead, normal, curvature: 0.0 , normal_curvature: 0.0};
+    let frame = FrontFrame { position: Vector::zeros(), ahead, normal, curvature: 0.0, normal_curvature: 0.0 };
     let mut end = frame;
     end.position[1 % (D - 1)] = 1.0;
     let frames = if D == 2 {

@@ -1,7 +1,7 @@
 //! Nodes along lines: mouths of cracks, sharp edges of the boundary, crack fronts.
 
-use super::{CLOSENESS, NodesOnFronts};
 use super::sites::{Sites, Stand};
+use super::{CLOSENESS, NodesOnFronts};
 use crate::crack::{CrackSurface, Mouths};
 use crate::geometry::surface::{Chain, Foot, Surface};
 use crate::geometry::triangle::Feature;
@@ -48,12 +48,10 @@ pub(super) fn place(sites: &mut Sites<'_>, fronts: NodesOnFronts) {
     }
 }
 
-/// Nodes along the folds of a crack inside the body, where the conditions of two plane faces meet.
+/// Nodes along the folds of a crack inside the body.
 fn place_on_folds(sites: &mut Sites<'_>, crack: u32) {
     let surface = &sites.cracks[crack as usize].surface;
-    for (triangle, k) in surface.folds(super::FOLD) {
-        let corners = surface.corners(triangle);
-        let ends = [corners[k], corners[(k + 1) % 3]];
+    for ends in sites.folds[crack as usize].clone() {
         let mut places = along(&ends, false, [End::Node; 2], sites);
         places.extend([(0, 0.0), (0, 1.0)]);
         for (_, t) in places {

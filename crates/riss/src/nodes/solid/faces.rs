@@ -56,7 +56,8 @@ fn cover_crack(sites: &mut Sites<'_>, crack: u32) {
         let clearance = Sites::clearance(own);
         // Rounding may take a row along the front a little nearer.
         let near_front = sites.is_near_front(at, clearance * (1.0 - 1e-6));
-        if near_front || is_on_border(surface, &foot) || !sites.is_clear(at, own, CLOSENESS) {
+        let near_fold = sites.is_near_fold(at, clearance * (1.0 - 1e-6));
+        if near_front || near_fold || is_on_border(surface, &foot) || !sites.is_clear(at, own, CLOSENESS) {
             return None;
         }
         let is_inside = sites.body.signed_distance(at) <= -clearance;

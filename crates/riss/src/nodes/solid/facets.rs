@@ -169,7 +169,8 @@ fn mean_normal(surface: &Surface, own: Vector3, site: &Site) -> Vector3 {
         let foot = surface.closest_within(site.position + (x * cos + y * sin) * radius, 2.0 * radius)?;
         Some(surface.normals()[foot.triangle as usize])
     });
-    (own + around.filter(|n| is_one_face(n, &own)).sum::<Vector3>()).normalize()
+    // Two sheets of a crack may come near each other; only what agrees belongs together.
+    (own + around.filter(|n| n.dot(&own) > 0.0).sum::<Vector3>()).normalize()
 }
 
 /// The two nodes where a crack meets the boundary.

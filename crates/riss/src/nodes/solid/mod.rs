@@ -31,8 +31,8 @@ pub use walls::{thinnest_wall, wall_regions};
 pub const CLOSENESS: f64 = 0.8;
 /// Least distance of nodes from surfaces that they do not stand on, and from crack fronts, over their spacing.
 pub const CLEARANCE: f64 = 0.5;
-/// Angle of an edge of a crack from which its sides are two faces, with nodes on the edge [rad]: normals smoothed over less
-/// of a bend are as good.
+/// Angle of an edge of a crack from which its sides are two faces, between whose nodes the edge passes [rad]: normals
+/// smoothed over less of a bend are as good.
 const FOLD: f64 = 0.15;
 /// More nodes than this are refused.
 pub const MAX_SOLID_NODES: usize = 3_000_000;

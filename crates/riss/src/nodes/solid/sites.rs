@@ -7,6 +7,7 @@ use crate::crack::{CrackSurface, FrontPoint};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::surface::{Foot, Surface};
 use crate::geometry::tree::BoxTree;
+use crate::geometry::triangle::area_vector;
 use crate::math::Vector3;
 
 /// A place for a node, or for two if it is on a crack.
@@ -38,17 +39,43 @@ pub(super) struct Sites<'a> {
     pub list: Vec<Site>,
     bins: Bins,
     /// Straight pieces of all fronts.
-    fronts: Vec<[Vector3; 2]>,
-    front_tree: BoxTree<3>,
+    fronts: Lines,
+    /// Folds of each crack, where a row of nodes stands.
+    pub folds: Vec<Vec<[Vector3; 2]>>,
+    fold_lines: Lines,
+}
+
+/// Straight pieces of lines.
+struct Lines {
+    pieces: Vec<[Vector3; 2]>,
+    tree: BoxTree<3>,
+}
+
+impl Lines {
+    fn new(pieces: Vec<[Vector3; 2]>) -> Self {
+        let boxes: Vec<_> = pieces.iter().map(|s| Aabb::of_points(*s)).collect();
+        Self { pieces, tree: BoxTree::new(&boxes) }
+    }
+
+    fn is_near(&self, p: Vector3, distance: f64) -> bool {
+        let mut near = false;
+        self.tree.visit(&Aabb::around(p, Vector3::repeat(distance)), |i| {
+            let [a, b] = self.pieces[i as usize];
+            let e = b - a;
+            let t = ((p - a).dot(&e) / e.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            near |= (p - a - e * t).norm() < distance;
+        });
+        near
+    }
 }
 
 impl<'a> Sites<'a> {
     pub fn new(body: &'a Surface, cracks: &'a [CrackSurface], spacing: &'a SolidSpacing) -> Self {
-        let fronts: Vec<[Vector3; 2]> =
-            cracks.iter().flat_map(|c| &c.fronts).flat_map(|f| f.segments().collect::<Vec<_>>()).collect();
-        let boxes: Vec<_> = fronts.iter().map(|s| Aabb::of_points(*s)).collect();
-        let front_tree = BoxTree::new(&boxes);
-        Self { body, cracks, spacing, list: vec![], bins: Bins::default(), fronts, front_tree }
+        let fronts = cracks.iter().flat_map(|c| &c.fronts).flat_map(|f| f.segments().collect::<Vec<_>>());
+        let folds: Vec<Vec<_>> = cracks.iter().map(|c| folds(&c.surface, spacing)).collect();
+        let fold_lines = Lines::new(folds.iter().flatten().copied().collect());
+        let fronts = Lines::new(fronts.collect());
+        Self { body, cracks, spacing, list: vec![], bins: Bins::default(), fronts, folds, fold_lines }
     }
 
     /// Size of the whole body [length].
@@ -69,14 +96,12 @@ impl<'a> Sites<'a> {
 
     /// Whether fronts are nearer than a distance.
     pub fn is_near_front(&self, p: Vector3, distance: f64) -> bool {
-        let mut near = false;
-        self.front_tree.visit(&Aabb::around(p, Vector3::repeat(distance)), |i| {
-            let [a, b] = self.fronts[i as usize];
-            let e = b - a;
-            let t = ((p - a).dot(&e) / e.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            near |= (p - a - e * t).norm() < distance;
-        });
-        near
+        self.fronts.is_near(p, distance)
+    }
+
+    /// Whether folds of cracks are nearer than a distance.
+    pub fn is_near_fold(&self, p: Vector3, distance: f64) -> bool {
+        self.fold_lines.is_near(p, distance)
     }
 
     /// Distance to the boundary inside the body, up to a limit; none outside if the boundary is within the limit.
@@ -104,6 +129,20 @@ impl<'a> Sites<'a> {
         let q = p + direction * (0.5 * (spacing + there));
         (q, self.spacing.at(q))
     }
+}
+
+/// The folds of a crack that nodes can tell from a smooth bend: sharp edges, and others where the triangles at both sides are
+/// wider than the spacing.
+fn folds(surface: &Surface, spacing: &SolidSpacing) -> Vec<[Vector3; 2]> {
+    let fold = |(t, k): (u32, usize)| {
+        let corners = surface.corners(t);
+        let ends = [corners[k], corners[(k + 1) % 3]];
+        let other = surface.across(t, k)?;
+        let height = |t: u32| area_vector(surface.corners(t)).norm() / (ends[1] - ends[0]).norm();
+        let is_wide = height(t).min(height(other)) > spacing.at((ends[0] + ends[1]) * 0.5);
+        (surface.is_sharp(t, k) || is_wide).then_some(ends)
+    };
+    surface.folds(super::FOLD).filter_map(fold).collect()
 }
 
 /// A number in [0, 1) that depends on nothing but two indices (SplitMix64).
