@@ -115,7 +115,7 @@ fn check(planes: [SurfaceConditions<3>; 2], remote: [f64; 2], expected: impl Fn(
     };
     let h = 0.125;
     let line = FrontLine::new((0..=24).map(|k| frame(FRAC_PI_2 * f64::from(k) / 24.0)).collect(), FrontEnds::Open);
-    let front = EnrichedFront { line, reach: 6.0 * h };
+    let front = EnrichedFront { line, reach: 6.0 * h, crack: None };
     let collocation = Collocation::new(solid, &cloud(h), Arc::new(Disc), vec![front], CollocationSettings::default());
     let found = collocation.solve(&collocation.assemble().unwrap()).unwrap();
     for angle in [0.0, 0.3, 0.8, 1.2, FRAC_PI_2] {
