@@ -74,8 +74,11 @@ impl<const D: usize> NodeConditions<D> {
             self.terms.push(StrongTerm { equation: Strong::Equilibrium, load, sight });
             return;
         }
-        let is_fitted = (is_front && settings.front_nodes == FrontNodes::Fitted)
-            || (settings.concave_corners == ConcaveCorners::Averaged && is_fold(position, facets));
+        let is_fitted = if is_front {
+            settings.front_nodes == FrontNodes::Fitted
+        } else {
+            settings.concave_corners == ConcaveCorners::Averaged && is_fold(position, facets)
+        };
         if is_fitted {
             self.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
             return;
