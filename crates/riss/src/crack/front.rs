@@ -135,7 +135,7 @@ mod tests {
     /// A circle of radius 2 on a cone of half a radian.
     #[test]
     fn the_front_of_a_cone_bends_out_of_it() {
-        let n = 200;
+        let n = 2000;
         let around = |k: usize, r: f64, z: f64| {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / n as f64).sin_cos();
             Vector3::new(r * cos, r * sin, z)
