@@ -8,7 +8,7 @@ use crate::resume::{self, Obstacle};
 use crate::run::RunArguments;
 use crate::sweep::{MOST_RUNS, combinations};
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, solid_grow};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, solid_grow, solid_loading};
 use riss::analysis::{RunSize, linear_static, solid_static};
 use riss::case::{AnyCase, Case, SolidCase};
 use riss::output::run_table::{RowStatus, RunRow, end_name, fronts, keys, table_csv, tips};
@@ -202,6 +202,10 @@ fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
         let (writer, state) = solid_grow::begin(case, folder)?;
         solid_grow::follow(case, growth, writer, state, progress, Speech::Nothing)?;
         return read_solid_results(folder).ok_or_else(|| "the results cannot be read".into());
+    }
+    if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
+        let followed = solid_loading::follow(case, cohesive, loading, folder, progress)?;
+        return followed.map(|f| f.results).ok_or_else(|| "stopped before the end".into());
     }
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();

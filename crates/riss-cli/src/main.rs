@@ -35,6 +35,7 @@ mod selftest;
 mod shape;
 mod solid;
 mod solid_grow;
+mod solid_loading;
 mod sweep;
 mod table;
 

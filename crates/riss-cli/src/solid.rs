@@ -5,7 +5,7 @@ use crate::grow::Speech;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::number;
-use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, interrupt, log, results, solid_grow};
+use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, interrupt, log, results, solid_grow, solid_loading};
 use riss::analysis::{FrontRecord, RunSize, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
 use riss::output::whole_file::write_whole;
@@ -36,6 +36,10 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
         interrupt::listen();
         let speech = if arguments.json { Speech::Json } else { Speech::Table };
         return solid_grow::grow(arguments, case, growth, dir, progress, speech);
+    }
+    if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
+        interrupt::listen();
+        return solid_loading::load(arguments, case, cohesive, loading, dir, progress);
     }
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();

@@ -32,7 +32,8 @@
 //!
 //! Solids have `fronts`: without `take`, a reference holds along all fronts of the crack; `"take": "greatest"`, `"least"`
 //! or `"mean"` picks one value, and `"at": [x, y, z]` that of the evaluated point there. `largest_principal_stress` is that at a node.
-//! Where cracks grow, all this is of the last step, and so is `crack_area`.
+//! Where cracks grow, all this is of the last step, and so is `crack_area`. With cohesive cracks, `loading` has `peak_load`,
+//! `displacement_at_peak`, `stiffness` up to the first crack, `dissipated_energy` in the end, and why that came (`end`).
 //!
 //! ```json
 //! {

@@ -30,6 +30,10 @@ pub enum Quantity {
     LargestPrincipalStress,
     /// A number of the whole body, in the first step.
     Scalar(String),
+    /// `peak_load`, `displacement_at_peak`, `dissipated_energy` or the initial `stiffness` of a solid with cohesive cracks.
+    Loading(String),
+    /// Why its loading ended.
+    LoadingEnd,
     /// A component of the force on a supported part, in the first step.
     Reaction {
         /// Name of the part.
@@ -108,6 +112,8 @@ impl Quantity {
             }
             Self::LargestPrincipalStress => "largest principal stress".into(),
             Self::Scalar(key) => key.replace('_', " "),
+            Self::Loading(key) => key.replace('_', " "),
+            Self::LoadingEnd => "end of loading".into(),
             Self::Reaction { part, axis } => format!("reaction {axis} of {part}"),
             Self::Path { crack, .. } => format!("path of {crack}, distance"),
             Self::EndKind => "end of growth".into(),
@@ -128,6 +134,8 @@ impl Quantity {
             Self::LargestPrincipalStress => results["stress"]["largest_principal"].as_f64()?,
             // A run with growth has a strain energy in every step, and the last one has none if the body came apart.
             Self::Scalar(key) => first[key].as_f64().or_else(|| results[key].as_f64())?,
+            Self::Loading(key) => loading(results, key)?,
+            Self::LoadingEnd => return word(&results["loading"]["end"]["kind"]),
             Self::Reaction { part, axis } => first["reactions"][part][usize::from(axis == "y")].as_f64()?,
             Self::Path { crack, reference, window } => {
                 path::distance(&path_of(steps.last()?, crack)?, reference, window)?
@@ -142,6 +150,19 @@ impl Quantity {
             Self::Cycles { until: Some((crack, length)) } => cycles_until(steps, crack, *length)?,
         };
         Some(Measured::Number(number))
+    }
+}
+
+/// From the load curve of a solid with cohesive cracks.
+fn loading(results: &Value, key: &str) -> Option<f64> {
+    let (loading, first) = (&results["loading"], &results["load_curve"][1]);
+    match key {
+        "peak_load" => loading["peak"]["load"].as_f64(),
+        "displacement_at_peak" => loading["peak"]["displacement"].as_f64(),
+        "dissipated_energy" => loading["dissipated_energy"].as_f64(),
+        // Up to the first crack the body is elastic.
+        "stiffness" => Some(first["load"].as_f64()? / first["displacement"].as_f64()?),
+        _ => None,
     }
 }
 

@@ -10,6 +10,7 @@ use std::path::Path;
 const TIP_QUANTITIES: [&str; 7] = ["K_I", "K_II", "K_I_direct", "K_II_direct", "J", "T", "kink_angle_deg"];
 const FRONT_QUANTITIES: [&str; 5] = ["K_I", "K_II", "K_III", "T", "J"];
 const SCALARS: [&str; 3] = ["strain_energy", "energy_error", "crack_area"];
+const LOADING_QUANTITIES: [&str; 4] = ["peak_load", "displacement_at_peak", "dissipated_energy", "stiffness"];
 
 type Object = Map<String, Value>;
 
@@ -34,10 +35,20 @@ impl Expected {
     pub fn parse(text: &str, file: &dyn Fn(&str) -> Result<String, String>) -> Result<Self, String> {
         let root: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let root = object(&root, "the file")?;
-        let known =
-            ["source", "run", "tips", "fronts", "largest_principal_stress", "reactions", "paths", "end", "cycles"]
-                .into_iter()
-                .chain(SCALARS);
+        let known = [
+            "source",
+            "run",
+            "tips",
+            "fronts",
+            "largest_principal_stress",
+            "reactions",
+            "paths",
+            "end",
+            "cycles",
+            "loading",
+        ]
+        .into_iter()
+        .chain(SCALARS);
         only_known(root, &known.collect::<Vec<_>>(), "the file")?;
         let source = root.get("source").and_then(Value::as_str).ok_or("`source` is missing")?;
         let run_by = match root.get("run").map(Value::as_str) {
@@ -59,6 +70,9 @@ impl Expected {
             if let Some(value) = root.get(key) {
                 reader.number(value, Quantity::Scalar(key.into()), key, source)?;
             }
+        }
+        if let Some(loading) = root.get("loading") {
+            reader.loading(object(loading, "loading")?)?;
         }
         if let Some(reactions) = root.get("reactions") {
             reader.reactions(object(reactions, "reactions")?)?;
@@ -125,6 +139,23 @@ impl Reader<'_> {
                 let source = text(front, "source").unwrap_or(self.source);
                 self.number(value, quantity, &format!("{place}.{key}"), source)?;
             }
+        }
+        Ok(())
+    }
+
+    fn loading(&mut self, loading: &Object) -> Result<(), String> {
+        let known: Vec<&str> = ["end", "source"].into_iter().chain(LOADING_QUANTITIES).collect();
+        only_known(loading, &known, "loading")?;
+        let source = text(loading, "source").unwrap_or(self.source);
+        for key in LOADING_QUANTITIES {
+            if let Some(value) = loading.get(key) {
+                self.number(value, Quantity::Loading(key.into()), &format!("loading.{key}"), source)?;
+            }
+        }
+        if let Some(end) = loading.get("end") {
+            let word = end.as_str().ok_or("loading.end must be a word")?;
+            let (quantity, target) = (Quantity::LoadingEnd, Target::Word(word.into()));
+            self.references.push(Reference { quantity, target, source: source.into() });
         }
         Ok(())
     }

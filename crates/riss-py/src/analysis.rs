@@ -123,7 +123,7 @@ fn listen<T: Send>(
         (None, Ok(Err(Failure::Files(path, e)))) => Err(error::of_files(&path, &e)),
         (None, Ok(Err(Failure::Threads(e)))) => Err(error::AnalysisError::new_err(e)),
         (None, Ok(Err(Failure::SolidGrowth))) => Err(error::AnalysisError::new_err(
-            "cracks of solids grow in the program alone: riss run; or take [growth] out",
+            "cracks of solids grow, and cohesive ones open, in the program alone: riss run; or take [growth] or cohesive = true out",
         )),
         (None, Ok(Err(Failure::Stopped))) => Err(error::AnalysisError::new_err("the run was stopped")),
         (None, Err(_)) => {
@@ -192,7 +192,7 @@ fn solve_solid(
     send: Sender<Event>,
     stop: &AtomicBool,
 ) -> Result<Solid, Failure> {
-    if case.growth.is_some() {
+    if case.growth.is_some() || case.loading.is_some() {
         return Err(Failure::SolidGrowth);
     }
     let mut listener = SolidListener { send, clock: Clock::new() };

@@ -1,6 +1,7 @@
 //! What an analysis reports.
 
 use super::crack_growth::GrowthState;
+use super::solid_cohesive::LoadingStep;
 use super::solid_growth::{SolidGrowthState, SolidStep};
 use super::warnings::Warning;
 use crate::crack::{End, EndKind, TipFrame};
@@ -54,6 +55,10 @@ pub trait Observer {
     }
     /// A step is complete. A break ends the analysis there.
     fn step(&mut self, _result: &StaticResult, _state: Option<&GrowthState>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// A state of a loaded solid with cohesive cracks is complete with its fields. A break ends the analysis there.
+    fn loading_step(&mut self, _step: &LoadingStep) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
     /// A step of growth in a solid is complete; `state` is the one that it began with. A break ends the analysis there.

@@ -57,7 +57,8 @@ pub fn solid_collocation(
     obstacles: Arc<OpaqueTriangles>,
     settings: &SolidSettings,
 ) -> Collocation<3> {
-    let fronts = model.cracks.iter().flat_map(|c| enriched(c, settings)).collect();
+    let cracks = model.cracks.iter().enumerate().filter(|(c, _)| model.cohesive_crack(*c).is_none());
+    let fronts = cracks.flat_map(|(_, c)| enriched(c, settings)).collect();
     let obstacles = obstacles as Arc<dyn Opaque<3> + Send>;
     Collocation::new(model.solid.clone(), &nodes.cloud, obstacles, fronts, settings.collocation)
 }
@@ -70,42 +71,63 @@ pub fn solid_static(model: &SolidModel, settings: &SolidSettings, observer: &mut
     Solved::of(model, settings, observer)?.result(model, settings, observer)
 }
 
-/// A solution with what it takes to evaluate it anywhere.
-pub(super) struct Solved {
-    nodes: SolidCloud,
+/// A solid with its nodes, ready to be assembled.
+pub(super) struct Placed {
     obstacles: Arc<OpaqueTriangles>,
-    collocation: Collocation<3>,
-    solution: CollocationSolution<3>,
+    /// The equations.
+    pub collocation: Collocation<3>,
+    /// Pairs of nodes, by their numbers in the equations.
+    pub pairs: Vec<FacePair>,
 }
 
-impl Solved {
-    /// Solves a cracked solid.
+impl Placed {
+    /// Places the nodes of a solid.
     pub fn of(model: &SolidModel, settings: &SolidSettings, observer: &mut dyn Observer) -> Result<Self> {
         observer.stage(Stage::Nodes);
         let nodes = solid_nodes(model, settings)?;
         let obstacles = Arc::new(solid_obstacles(&model.body, &model.cracks));
         observer.stage(Stage::Discretization);
         let collocation = solid_collocation(model, &nodes, obstacles.clone(), settings);
+        let pairs = renumbered(&nodes.pairs, &collocation.origins, nodes.cloud.len());
+        Ok(Self { obstacles, collocation, pairs })
+    }
+}
+
+/// A solution with what it takes to evaluate it anywhere.
+pub(super) struct Solved {
+    placed: Placed,
+    solution: CollocationSolution<3>,
+}
+
+impl Solved {
+    /// Solves a cracked solid.
+    pub fn of(model: &SolidModel, settings: &SolidSettings, observer: &mut dyn Observer) -> Result<Self> {
+        let placed = Placed::of(model, settings, observer)?;
         observer.stage(Stage::Assembly);
-        let system = collocation.assemble()?;
+        let system = placed.collocation.assemble()?;
         observer.stage(Stage::Solve);
-        let solution = collocation.solve(&system)?;
-        Ok(Self { nodes, obstacles, collocation, solution })
+        let solution = placed.collocation.solve(&system)?;
+        Ok(Self { placed, solution })
+    }
+
+    /// A solution that is known.
+    pub fn new(placed: Placed, solution: CollocationSolution<3>) -> Self {
+        Self { placed, solution }
     }
 
     /// Whether nothing hides two points from each other.
     pub fn visible(&self, p: Vector3, q: Vector3) -> bool {
-        self.obstacles.visible(p, q)
+        self.placed.obstacles.visible(p, q)
     }
 
     /// Stresses at points in the body that are on no surface [stress].
     pub fn stresses_at(&self, points: &[Vector3]) -> Result<Vec<Matrix<3>>> {
         let one = |(fit, shape): &mut (FitBuffer<3>, ShapeFunctions<3>), p: &Vector3| {
-            self.collocation.approximation.at_point(*p, *p, fit, shape)?;
+            self.placed.collocation.approximation.at_point(*p, *p, fit, shape)?;
             let term =
                 |(k, i): (usize, &u32)| self.solution.displacements[*i as usize] * shape.gradients[k].transpose();
             let gradient: Matrix<3> = shape.neighbors.iter().enumerate().map(term).sum();
-            Ok(stress(&self.collocation.solid.material, &gradient))
+            Ok(stress(&self.placed.collocation.solid.material, &gradient))
         };
         points.par_iter().map_init(Default::default, one).collect()
     }
@@ -113,7 +135,8 @@ impl Solved {
     /// Evaluates the fronts.
     fn fronts(&self, model: &SolidModel, settings: &SolidSettings) -> Result<Vec<FrontRecord>> {
         let mut records = vec![];
-        for (crack, surface) in model.cracks.iter().enumerate() {
+        let cracks = model.cracks.iter().enumerate().filter(|(c, _)| model.cohesive_crack(*c).is_none());
+        for (crack, surface) in cracks {
             let sides: Option<&dyn CrackSides<3>> =
                 if surface.surface.is_plane() { None } else { Some(&surface.surface) };
             for front in &surface.fronts {
@@ -121,13 +144,13 @@ impl Solved {
                     let h = settings.spacing.at(p.position);
                     let frame = frame(p);
                     let cut = DiscCut { frame: &frame, sides };
-                    let largest = free_disc(model, &self.obstacles, crack, &cut, h);
+                    let largest = free_disc(model, &self.placed.obstacles, crack, &cut, h);
                     let factors = match largest {
                         None => None,
                         Some(r) => {
                             let radii = DISCS.map(|share| share * r);
                             let displacements = &self.solution.displacements;
-                            let discs = front_integrals(&self.collocation, displacements, &cut, crack, &radii)?;
+                            let discs = front_integrals(&self.placed.collocation, displacements, &cut, crack, &radii)?;
                             let mut factors = FrontFactors::of(&discs);
                             let open = if front.is_closed { 0.0 } else { h / crack_length(surface, false) };
                             let bends = [p.curvature.abs(), front.largest_curvature()].map(|c| h * c);
@@ -152,28 +175,38 @@ impl Solved {
         settings: &SolidSettings,
         observer: &mut dyn Observer,
     ) -> Result<SolidResult> {
+        Ok(self.result_and_place(model, settings, observer)?.0)
+    }
+
+    /// The same, and the nodes back.
+    pub fn result_and_place(
+        self,
+        model: &SolidModel,
+        settings: &SolidSettings,
+        observer: &mut dyn Observer,
+    ) -> Result<(SolidResult, Placed)> {
         observer.stage(Stage::Fracture);
         let fronts = self.fronts(model, settings)?;
         observer.stage(Stage::Fields);
-        let gradients = self.collocation.gradients(&self.solution.displacements)?;
-        let cloud: Cloud<3> = self.collocation.cloud().clone();
-        let pairs = renumbered(&self.nodes.pairs, &self.collocation.origins, self.nodes.cloud.len());
+        let Self { placed, solution } = self;
+        let gradients = placed.collocation.gradients(&solution.displacements)?;
+        let cloud: Cloud<3> = placed.collocation.cloud().clone();
         let mut result = SolidResult {
             n_nodes: cloud.len(),
             stresses: gradients.iter().map(|g| stress(&model.solid.material, g)).collect(),
-            displacements: self.solution.displacements,
+            displacements: solution.displacements,
             cloud,
-            pairs,
+            pairs: placed.pairs.clone(),
             opened_cracks: vec![],
             fronts,
-            effort: self.solution.effort,
+            effort: solution.effort,
             warnings: vec![],
         };
         result.opened_cracks = (0..model.cracks.len()).map(|c| result.opened_crack(&model.cracks[c], c)).collect();
         let mut warnings = Warnings::new(observer);
         inspect(model, settings, &result, &mut warnings);
         result.warnings = warnings.list;
-        Ok(result)
+        Ok((result, placed))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Constitutive laws. Knows no geometry, nodes or cracks.
 
+pub mod cohesive_law;
 pub mod elasticity;
 
+pub use cohesive_law::{Cohesion, CohesiveLaw, Softening};
 pub use elasticity::{Elasticity, PlaneState};

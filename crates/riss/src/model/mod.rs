@@ -2,6 +2,7 @@
 //!
 //! Has never heard of nodes. Valid by construction when it comes from `case::build`.
 
+pub mod cohesive;
 pub mod contact;
 pub mod domain;
 pub mod field;
@@ -15,6 +16,7 @@ use crate::crack::{CrackPath, TipFrame, TipId};
 use crate::exact::ExactField;
 use crate::material::{Elasticity, PlaneState};
 use crate::math::Vector2;
+pub use cohesive::{CohesiveCrack, CohesiveModel};
 pub use contact::Contact;
 pub use domain::{BoundaryPart, Domain, EdgeId, PartId};
 pub use field::{FieldPoint, ScalarField};

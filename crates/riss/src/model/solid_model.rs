@@ -1,5 +1,6 @@
 //! A cracked solid: its surface, its cracks, and what acts on them.
 
+use super::cohesive::{CohesiveCrack, CohesiveModel};
 use super::solid::Solid;
 use crate::crack::CrackSurface;
 use crate::geometry::surface::Surface;
@@ -19,4 +20,13 @@ pub struct SolidModel {
     pub yield_stress: Option<f64>,
     /// Material, loads and supports.
     pub solid: Solid<3>,
+    /// Cohesive cracks, if there are some.
+    pub cohesive: Option<CohesiveModel>,
+}
+
+impl SolidModel {
+    /// What a crack is before the load, if it is cohesive.
+    pub fn cohesive_crack(&self, crack: usize) -> Option<&CohesiveCrack> {
+        self.cohesive.as_ref()?.cracks[crack].as_ref()
+    }
 }

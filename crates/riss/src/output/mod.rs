@@ -4,7 +4,7 @@
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
-//! [`solid_writer`] (step by step), [`solid_report`], [`solid_picture()`].
+//! [`solid_writer`] (step by step), [`loading_writer`] (of cohesive cracks), [`solid_report`], [`solid_picture()`].
 
 mod color_map;
 pub mod comparison;
@@ -14,6 +14,7 @@ pub mod exports;
 pub mod field_picture;
 pub mod fields;
 pub mod history;
+pub mod loading_writer;
 pub mod model_picture;
 pub mod report;
 pub mod results;
@@ -32,6 +33,7 @@ pub mod whole_file;
 pub use comparison::Comparison;
 pub use convergence::write_convergence;
 pub use field_picture::{FieldQuantity, write_field_picture};
+pub use loading_writer::{LOAD_CURVE_FILE, LoadingWriter};
 pub use model_picture::write_model_picture;
 pub use report::{REPORT_FILE, RunSource, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};

@@ -106,6 +106,11 @@ fn von_mises(stress: &Matrix<3>) -> f64 {
 }
 
 pub(super) fn cracks(result: &SolidResult) -> Vec<u8> {
+    cracks_with(result, None)
+}
+
+/// The cracks with the tractions between their faces, if there are some.
+pub(super) fn cracks_with(result: &SolidResult, tractions: Option<&[Vec<f64>]>) -> Vec<u8> {
     let (mut positions, mut openings, mut gaps) = (vec![], vec![], vec![]);
     let mut cells = Cells { cell_type: CellType::Triangle, points: vec![], sizes: vec![] };
     let mut index = vec![];
@@ -120,6 +125,7 @@ pub(super) fn cracks(result: &SolidResult) -> Vec<u8> {
             index.push(crack as i64);
         }
     }
-    let arrays = [Array::spatial_vectors("opening", openings), Array::scalars("normal opening", gaps)];
+    let mut arrays = vec![Array::spatial_vectors("opening", openings), Array::scalars("normal opening", gaps)];
+    arrays.extend(tractions.map(|t| Array::scalars("cohesive traction", t.iter().flatten().copied())));
     spatial_grid(&positions, &cells, &arrays, &[Array::integers("crack", index)])
 }

@@ -3,7 +3,7 @@
 //! What the user wrote is escaped, always.
 
 use super::report::html;
-use super::solid_results::{FrontPointResults, FrontResults, SolidResults};
+use super::solid_results::{FrontPointResults, FrontResults, LoadCurvePoint, SolidResults};
 use std::fmt::Write;
 
 const STYLE: &str = "
@@ -36,6 +36,13 @@ struct Series<'a> {
     bar: fn(&FrontPointResults) -> Option<f64>,
 }
 
+/// A curve through points with half the height of their error bars.
+struct Curve<'a> {
+    name: &'a str,
+    points: Vec<[f64; 3]>,
+    has_marks: bool,
+}
+
 const FACTORS: [Series; 3] = [
     Series { name: "K_I", value: |p| p.k1, bar: |p| p.k_uncertainty },
     Series { name: "K_II", value: |p| p.k2, bar: |p| p.k_uncertainty },
@@ -54,6 +61,7 @@ pub fn solid_report(results: &SolidResults) -> String {
     );
     push_warnings(&mut page, results);
     push_growth(&mut page, results);
+    push_loading(&mut page, results);
     for (index, front) in results.fronts.iter().enumerate() {
         push_front(&mut page, index, front);
     }
@@ -102,13 +110,45 @@ fn push_growth(page: &mut String, results: &SolidResults) {
     page.push_str("</section>\n");
 }
 
+fn push_loading(page: &mut String, results: &SolidResults) {
+    let Some(loading) = &results.loading else { return };
+    let point = |p: &LoadCurvePoint| Some([p.displacement?, p.load?, 0.0]);
+    let points: Vec<[f64; 3]> = results.load_curve.iter().filter_map(point).collect();
+    let end = points.iter().map(|p| p[0]).fold(f64::MIN_POSITIVE, f64::max);
+    let energy = |get: fn(&LoadCurvePoint) -> Option<f64>| {
+        results.load_curve.iter().filter_map(|p| Some([p.displacement?, get(p)?, 0.0])).collect()
+    };
+    let curve = |name, points| Curve { name, points, has_marks: false };
+    let energies = [
+        curve("work", energy(|p| p.external_work)),
+        curve("stored", energy(|p| p.elastic_energy)),
+        curve("dissipated", energy(|p| p.dissipated_energy)),
+    ];
+    page.push_str("<section>\n<h2>Load curve</h2>\n<div class=\"charts\">\n");
+    page.push_str(&chart(&[curve("load", points)], end, "displacement", "load over displacement"));
+    page.push_str(&chart(&energies, end, "displacement", "energies over displacement"));
+    let peak = &loading.peak;
+    let _ = write!(
+        page,
+        "</div>\n<p>Peak: load {} at displacement {}. Dissipated in the end: {}. Loading ended: {}</p>\n</section>\n",
+        cell(peak.load),
+        cell(peak.displacement),
+        cell(loading.dissipated_energy),
+        html(&loading.end.reason)
+    );
+}
+
 fn push_front(page: &mut String, index: usize, front: &FrontResults) {
     let ends = if front.closed { "closed" } else { "open" };
     let (crack, length) = (html(&front.crack), cell(front.length));
     let _ = write!(page, "<section>\n<h2>Front {} of {crack}, {ends}, length {length}</h2>\n", index + 1);
     page.push_str("<div class=\"charts\">\n");
-    page.push_str(&chart(front, &FACTORS, "stress intensity factors [stress·√length] over the length along the front"));
-    page.push_str(&chart(front, &T_STRESS, "T-stress [stress] over the length along the front"));
+    page.push_str(&front_chart(
+        front,
+        &FACTORS,
+        "stress intensity factors [stress·√length] over the length along the front",
+    ));
+    page.push_str(&front_chart(front, &T_STRESS, "T-stress [stress] over the length along the front"));
     page.push_str("</div>\n<div class=\"scroll\"><table>\n<tr>");
     let heads = ["s", "x", "y", "z", "K_I", "K_II", "K_III", "± K", "T", "± T", "J", "± J", "disc radius"];
     heads.iter().for_each(|head| page.push_str(&format!("<th>{head}")));
@@ -191,29 +231,34 @@ impl Axes {
 }
 
 /// Curves over the length along a front; nothing where no point has a value.
-fn chart(front: &FrontResults, series: &[Series], label: &str) -> String {
+fn front_chart(front: &FrontResults, series: &[Series], label: &str) -> String {
     let known = |s: &Series| -> Vec<[f64; 3]> {
         let points = front.points.iter();
         points.filter_map(|p| Some([p.s?, (s.value)(p)?, (s.bar)(p).unwrap_or(0.0)])).collect()
     };
-    let curves: Vec<Vec<[f64; 3]>> = series.iter().map(known).collect();
-    let all = || curves.iter().flatten();
+    let curves: Vec<Curve> = series.iter().map(|s| Curve { name: s.name, points: known(s), has_marks: true }).collect();
+    chart(&curves, front.length.filter(|l| *l > 0.0).unwrap_or(1.0), "s", label)
+}
+
+/// Curves from zero up to `end`.
+fn chart(curves: &[Curve], end: f64, axis: &str, label: &str) -> String {
+    let all = || curves.iter().flat_map(|c| &c.points);
     if all().count() == 0 {
         return String::new();
     }
     let least = all().map(|p| p[1] - p[2]).fold(0.0, f64::min);
     let greatest = all().map(|p| p[1] + p[2]).fold(0.0, f64::max);
     let room = (0.05 * (greatest - least)).max(f64::MIN_POSITIVE);
-    let length = front.length.filter(|l| *l > 0.0).unwrap_or(1.0);
-    let axes = Axes { lower: [0.0, least - room], upper: [length, greatest + room] };
+    let axes = Axes { lower: [0.0, least - room], upper: [end, greatest + room] };
     let [width, height] = SIZE;
     let mut svg = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\">\n", html(label));
-    push_grid(&mut svg, &axes);
-    for (k, (curve, one)) in curves.iter().zip(series).enumerate() {
+    push_grid(&mut svg, &axes, axis);
+    for (k, curve) in curves.iter().enumerate() {
         let color = COLORS[k % COLORS.len()];
-        let points: Vec<String> = curve.iter().map(|p| format!("{:.1},{:.1}", axes.x(p[0]), axes.y(p[1]))).collect();
+        let at = |p: &[f64; 3]| format!("{:.1},{:.1}", axes.x(p[0]), axes.y(p[1]));
+        let points: Vec<String> = curve.points.iter().map(at).collect();
         let _ = writeln!(svg, "<polyline class=\"line\" stroke=\"{color}\" points=\"{}\"/>", points.join(" "));
-        for [s, value, bar] in curve {
+        for [s, value, bar] in curve.points.iter().filter(|_| curve.has_marks) {
             let (x, low, high) = (axes.x(*s), axes.y(value - bar), axes.y(value + bar));
             let _ = writeln!(
                 svg,
@@ -223,12 +268,12 @@ fn chart(front: &FrontResults, series: &[Series], label: &str) -> String {
         }
         let x = MARGINS[0] + 70.0 * k as f64;
         let _ = writeln!(svg, "<rect fill=\"{color}\" x=\"{x}\" y=\"8\" width=\"10\" height=\"10\"/>");
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"17\">{}</text>", x + 15.0, one.name);
+        let _ = writeln!(svg, "<text x=\"{}\" y=\"17\">{}</text>", x + 15.0, curve.name);
     }
     svg + "</svg>\n"
 }
 
-fn push_grid(svg: &mut String, axes: &Axes) {
+fn push_grid(svg: &mut String, axes: &Axes, name: &str) {
     let (left, right, bottom) = (MARGINS[0], SIZE[0] - MARGINS[1], SIZE[1] - MARGINS[3]);
     for v in axes.ticks(1) {
         let y = axes.y(v);
@@ -239,7 +284,7 @@ fn push_grid(svg: &mut String, axes: &Axes) {
         let x = axes.x(s);
         let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>", bottom + 18.0, tick(s));
     }
-    let _ = writeln!(svg, "<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">s</text>", SIZE[1] - 6.0);
+    let _ = writeln!(svg, "<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">{name}</text>", SIZE[1] - 6.0);
 }
 
 /// A round number without the traces of binary arithmetic.

@@ -43,6 +43,8 @@ pub struct CollocationSystem<const D: usize> {
     pub load: Vec<f64>,
     /// What holds each node, as a projector on the directions with prescribed displacement.
     pub fixed: Vec<Matrix<D>>,
+    /// What a traction on crack faces counts in the row of each node [length/stress]; zero where there is no such face.
+    pub face_scales: Vec<f64>,
 }
 
 impl<const D: usize> CollocationSystem<D> {
@@ -101,6 +103,7 @@ impl<const D: usize> Collocation<D> {
                     rows: RowChunk::with_capacity(nodes.len() * expected),
                     load: Vec::with_capacity(nodes.len() * D),
                     fixed: Vec::with_capacity(nodes.len()),
+                    face_scales: Vec::with_capacity(nodes.len()),
                 };
                 for node in nodes {
                     self.add_row(node as u32, scratch, &mut part)?;
@@ -109,13 +112,15 @@ impl<const D: usize> Collocation<D> {
             })
             .collect();
         let (mut rows, mut load, mut fixed) = (vec![], Vec::with_capacity(n * D), Vec::with_capacity(n));
+        let mut face_scales = Vec::with_capacity(n);
         for part in parts {
             let part = part?;
             rows.push(part.rows);
             load.extend(part.load);
             fixed.extend(part.fixed);
+            face_scales.extend(part.face_scales);
         }
-        Ok(CollocationSystem { tangent: BlockRows::new(rows), load, fixed })
+        Ok(CollocationSystem { tangent: BlockRows::new(rows), load, fixed, face_scales })
     }
 
     /// Displacement gradients at all nodes, `[(i, j)] = ∂u_i/∂x_j`.
@@ -141,7 +146,7 @@ impl<const D: usize> Collocation<D> {
         let mut load = conditions.displacement;
         let young = self.solid.material.young;
         // All terms of a row have one scale, or their weights would not be those of their angles.
-        let mut spacing = None;
+        let (mut spacing, mut face_scale) = (None, 0.0);
         for term in &conditions.terms {
             let radius = match term.equation {
                 Strong::Fit => self.approximation.at_front(node, term.sight, buffer, shape)?,
@@ -152,7 +157,10 @@ impl<const D: usize> Collocation<D> {
             let h = *spacing.get_or_insert(radius / ball_radius::<D>(shape.neighbors.len()));
             let scale = match term.equation {
                 Strong::Equilibrium => h * h / young,
-                Strong::Traction { .. } => h / young,
+                Strong::Traction { .. } => {
+                    face_scale = h / young * conditions.face_share;
+                    h / young
+                }
                 Strong::Fit => {
                     entries.push((node, to_block(&free)));
                     1.0
@@ -165,6 +173,7 @@ impl<const D: usize> Collocation<D> {
         part.rows.push(entries);
         part.load.extend(load.iter());
         part.fixed.push(conditions.fixed);
+        part.face_scales.push(face_scale);
         Ok(())
     }
 
@@ -201,6 +210,7 @@ struct Part<const D: usize> {
     rows: RowChunk<D>,
     load: Vec<f64>,
     fixed: Vec<Matrix<D>>,
+    face_scales: Vec<f64>,
 }
 
 /// Working memory of one thread.

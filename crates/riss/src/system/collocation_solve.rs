@@ -65,21 +65,50 @@ impl<const D: usize> Collocation<D> {
     /// [`Error::FreeRigidMotion`] if the supports leave one and the model does not remove it,
     /// [`Error::NotConverged`] or [`Error::Factorization`] if the system cannot be solved.
     pub fn solve(&self, system: &CollocationSystem<D>) -> Result<CollocationSolution<D>> {
-        let border = self.free_motions(&system.fixed)?;
+        let (x, effort) = self.prepare(system, self.free_motions(&system.fixed)?)?.solve(&system.load)?;
+        let displacements = x.chunks_exact(D).map(Vector::from_column_slice).collect();
+        Ok(CollocationSolution { displacements, effort })
+    }
+
+    /// Factors the system for any number of right-hand sides.
+    ///
+    /// - `border`: unit vectors of the motions that nothing holds
+    ///
+    /// # Errors
+    /// [`Error::Factorization`] if the system is singular to the direct solver or on the coarse level.
+    pub fn prepare<'a>(
+        &self,
+        system: &'a CollocationSystem<D>,
+        border: Vec<Vec<f64>>,
+    ) -> Result<PreparedSolver<'a, D>> {
         let n = self.cloud().len();
         let is_direct = match self.settings.solver {
             CollocationSolver::Automatic => n <= DIRECT_UP_TO[D - 2],
             CollocationSolver::Direct => true,
             CollocationSolver::Iterative => false,
         };
-        let (x, effort) =
-            if is_direct { solve_direct(system, &border)? } else { self.solve_iteratively(system, &border)? };
-        let displacements = x.chunks_exact(D).map(Vector::from_column_slice).collect();
-        Ok(CollocationSolution { displacements, effort })
+        let factors = if is_direct {
+            Factors::Direct(SparseLu::new(ScalarRows::bordered(&system.tangent, &border))?)
+        } else {
+            let size = (n / GROUPS).clamp(GROUP_SIZES[0], GROUP_SIZES[1]);
+            let positions = &self.cloud().positions;
+            let (fine, coarse) = rayon::join(
+                || IncompleteFactor::new(&system.tangent, parts(n)),
+                || {
+                    let groups = Aggregates::new(positions, &system.tangent, &system.fixed, size);
+                    CoarseLevel::new(&system.tangent, positions, &system.fixed, groups, &border)
+                },
+            );
+            Factors::Iterative { fine, coarse: coarse? }
+        };
+        Ok(PreparedSolver { system, border, factors })
     }
 
     /// Unit vectors of the rigid motions that nothing holds.
-    fn free_motions(&self, fixed: &[Matrix<D>]) -> Result<Vec<Vec<f64>>> {
+    ///
+    /// # Errors
+    /// [`Error::FreeRigidMotion`] if there are some and the model does not remove them.
+    pub fn free_motions(&self, fixed: &[Matrix<D>]) -> Result<Vec<Vec<f64>>> {
         let motions = rigid_motions(&self.cloud().positions);
         let held = |a: &Vec<f64>, b: &Vec<f64>| -> f64 {
             let pairs = a.chunks_exact(D).zip(b.chunks_exact(D)).zip(fixed);
@@ -108,32 +137,48 @@ impl<const D: usize> Collocation<D> {
             RigidMotion::Supported | RigidMotion::MeanIsZero => Ok(free),
         }
     }
+}
+
+/// A system with the factors that solve it.
+pub struct PreparedSolver<'a, const D: usize> {
+    system: &'a CollocationSystem<D>,
+    border: Vec<Vec<f64>>,
+    factors: Factors<D>,
+}
+
+/// What solves.
+enum Factors<const D: usize> {
+    Direct(SparseLu),
+    Iterative { fine: IncompleteFactor<D>, coarse: CoarseLevel<D> },
+}
+
+impl<const D: usize> PreparedSolver<'_, D> {
+    /// Solves for a right-hand side.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] or [`Error::Residual`] if the solution is not good enough.
+    pub fn solve(&self, right: &[f64]) -> Result<(Vec<f64>, SolverEffort)> {
+        match &self.factors {
+            Factors::Direct(factor) => self.solve_directly(factor, right),
+            Factors::Iterative { fine, coarse } => self.solve_iteratively(fine, coarse, right),
+        }
+    }
 
     fn solve_iteratively(
         &self,
-        system: &CollocationSystem<D>,
-        border: &[Vec<f64>],
+        fine: &IncompleteFactor<D>,
+        coarse: &CoarseLevel<D>,
+        right: &[f64],
     ) -> Result<(Vec<f64>, SolverEffort)> {
-        let n = self.cloud().len();
-        let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&system.tangent, border, x, y);
-        let size = (n / GROUPS).clamp(GROUP_SIZES[0], GROUP_SIZES[1]);
-        let positions = &self.cloud().positions;
-        let (fine, coarse) = rayon::join(
-            || IncompleteFactor::new(&system.tangent, parts(n)),
-            || {
-                let groups = Aggregates::new(positions, &system.tangent, &system.fixed, size);
-                CoarseLevel::new(&system.tangent, positions, &system.fixed, groups, border)
-            },
-        );
-        let coarse = coarse?;
-        let preconditioner = TwoLevel { matrix: &matrix, coarse: &coarse, fine: &fine };
-        let mut x = vec![0.0; n * D];
-        let (method, progress) = iterate(&matrix, &preconditioner, &system.load, &mut x);
+        let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&self.system.tangent, &self.border, x, y);
+        let preconditioner = TwoLevel { matrix: &matrix, coarse, fine };
+        let mut x = vec![0.0; right.len()];
+        let (method, progress) = iterate(&matrix, &preconditioner, right, &mut x);
         if !(progress.residual <= ALLOWED) {
             return Err(Error::NotConverged {
                 method: method.into(),
                 iterations: progress.iterations,
-                n_unknowns: n * D,
+                n_unknowns: right.len(),
                 residual: progress.residual,
                 allowed: ALLOWED,
                 hint: "; look for places where nodes are badly spread, or use fewer nodes with the direct solver"
@@ -144,10 +189,33 @@ impl<const D: usize> Collocation<D> {
             method,
             iterations: progress.iterations,
             residual: progress.residual,
-            n_blocks: system.tangent.n_blocks(),
+            n_blocks: self.system.tangent.n_blocks(),
             n_factor_blocks: fine.n_blocks(),
             n_coarse: coarse.n_unknowns(),
         };
+        Ok((x, effort))
+    }
+
+    fn solve_directly(&self, factor: &SparseLu, right: &[f64]) -> Result<(Vec<f64>, SolverEffort)> {
+        let (mut x, mut r) = (vec![0.0; right.len()], vec![0.0; right.len()]);
+        let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&self.system.tangent, &self.border, x, y);
+        // Two steps of refinement: the pivots are chosen for few entries too.
+        for _ in 0..3 {
+            krylov::residual(&matrix, right, &x, &mut r);
+            let mut step = r.clone();
+            step.resize(right.len() + self.border.len(), 0.0);
+            factor.solve_in_place(&mut step);
+            step.truncate(right.len());
+            krylov::add(&mut x, 1.0, &step);
+        }
+        krylov::residual(&matrix, right, &x, &mut r);
+        let residual = krylov::norm(&r) / krylov::norm(right).max(f64::MIN_POSITIVE);
+        if !(residual <= ALLOWED) {
+            return Err(Error::Residual { residual, allowed: ALLOWED });
+        }
+        let n_blocks = self.system.tangent.n_blocks();
+        let effort =
+            SolverEffort { method: "sparse LU", iterations: 3, residual, n_blocks, n_factor_blocks: 0, n_coarse: 0 };
         Ok((x, effort))
     }
 }
@@ -222,34 +290,6 @@ fn multiply_bordered<const D: usize>(matrix: &BlockRows<D>, border: &[Vec<f64>],
     for b in border {
         krylov::add(y, krylov::dot(b, x), b);
     }
-}
-
-fn solve_direct<const D: usize>(
-    system: &CollocationSystem<D>,
-    border: &[Vec<f64>],
-) -> Result<(Vec<f64>, SolverEffort)> {
-    let right = &system.load;
-    let factor = SparseLu::new(ScalarRows::bordered(&system.tangent, border))?;
-    let (mut x, mut r) = (vec![0.0; right.len()], vec![0.0; right.len()]);
-    let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&system.tangent, border, x, y);
-    // Two steps of refinement: the pivots are chosen for few entries too.
-    for _ in 0..3 {
-        krylov::residual(&matrix, right, &x, &mut r);
-        let mut step = r.clone();
-        step.resize(right.len() + border.len(), 0.0);
-        factor.solve_in_place(&mut step);
-        step.truncate(right.len());
-        krylov::add(&mut x, 1.0, &step);
-    }
-    krylov::residual(&matrix, right, &x, &mut r);
-    let residual = krylov::norm(&r) / krylov::norm(right).max(f64::MIN_POSITIVE);
-    if !(residual <= ALLOWED) {
-        return Err(Error::Residual { residual, allowed: ALLOWED });
-    }
-    let n_blocks = system.tangent.n_blocks();
-    let effort =
-        SolverEffort { method: "sparse LU", iterations: 3, residual, n_blocks, n_factor_blocks: 0, n_coarse: 0 };
-    Ok((x, effort))
 }
 
 /// Translations and rotations about the middle, as orthogonal unit vectors in the plane and nearly so in space.

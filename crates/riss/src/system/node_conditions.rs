@@ -21,6 +21,8 @@ pub struct NodeConditions<const D: usize> {
     pub displacement: Vector<D>,
     /// What holds in the directions that are left: a sum of terms.
     pub terms: Vec<StrongTerm<D>>,
+    /// Share of crack faces in the tractions.
+    pub face_share: f64,
 }
 
 /// A term of the strong form at a node.
@@ -48,7 +50,7 @@ pub enum Strong<const D: usize> {
 
 impl<const D: usize> Default for NodeConditions<D> {
     fn default() -> Self {
-        Self { fixed: Matrix::zeros(), displacement: Vector::zeros(), terms: vec![] }
+        Self { fixed: Matrix::zeros(), displacement: Vector::zeros(), terms: vec![], face_share: 0.0 }
     }
 }
 
@@ -57,6 +59,7 @@ impl<const D: usize> NodeConditions<D> {
     pub fn look_up(&mut self, solid: &Solid<D>, cloud: &Cloud<D>, node: usize, settings: &CollocationSettings) {
         (self.fixed, self.displacement) = (Matrix::zeros(), Vector::zeros());
         self.terms.clear();
+        self.face_share = 0.0;
         let (position, sight) = (cloud.positions[node], cloud.sights[node]);
         let facets: &[Facet<D>] = match &cloud.places[node] {
             Place::Inside => &[],
@@ -130,6 +133,9 @@ impl<const D: usize> NodeConditions<D> {
                 traction(solid, facet).value(&SurfacePoint { position, normal: facet.normal, sight: facet.sight })
                     * share;
             let own = facet.normal * share;
+            if matches!(facet.surface, SurfaceId::Face { .. }) {
+                self.face_share += share;
+            }
             if one_sided {
                 let equation = Strong::Traction { normal: own };
                 self.terms.push(StrongTerm { equation, load, sight: facet.sight });

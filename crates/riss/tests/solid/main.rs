@@ -3,6 +3,7 @@
 mod bent;
 mod boxes;
 mod cavity;
+mod cohesive;
 mod convergence;
 mod front_conditions;
 mod front_integral;

@@ -7,7 +7,7 @@ use crate::case::files::Files;
 use crate::crack::{CrackShape, CrackSurface};
 use crate::geometry::surface::Surface;
 use crate::math::Vector3;
-use crate::model::VectorField;
+use crate::model::{CohesiveCrack, VectorField};
 
 /// All cracks of a case.
 #[derive(Default)]
@@ -15,6 +15,7 @@ pub(super) struct Cracks {
     pub names: Vec<String>,
     pub surfaces: Vec<CrackSurface>,
     pub faces: Vec<VectorField<3>>,
+    pub cohesive: Vec<Option<CohesiveCrack>>,
     /// Whether one is under pressure.
     pub acts: bool,
 }
@@ -43,6 +44,7 @@ pub(super) fn cracks(file: &SolidFile, body: &Surface, files: &Files, report: &m
         let pressure = crack.pressure.unwrap_or(0.0);
         cracks.acts |= pressure != 0.0;
         cracks.faces.push(if pressure == 0.0 { VectorField::zero() } else { VectorField::pressure(pressure) });
+        cracks.cohesive.push(super::cohesive::crack(crack, &key, report));
         cracks.names.push(name);
         cracks.surfaces.push(surface);
     }

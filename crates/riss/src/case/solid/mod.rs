@@ -1,9 +1,10 @@
 //! Cases of solids: `method = "collocation"`.
 //!
 //! Reading order: [`schema`] (what may be written), [`body`] and [`stl`] (geometry), [`cracks`], [`conditions`], [`nodes`],
-//! [`growth`].
+//! [`growth`], [`cohesive`].
 
 mod body;
+mod cohesive;
 mod conditions;
 mod cracks;
 mod growth;
@@ -18,7 +19,7 @@ use super::document::{Content, Document};
 use super::files::Files;
 use super::problem::{self, CaseErrors, Problem};
 use super::{Case, MAX_BYTES, read_text};
-use crate::analysis::{SolidGrowthSettings, SolidSettings};
+use crate::analysis::{LoadingSettings, SolidGrowthSettings, SolidSettings};
 use crate::material::{Elasticity, PlaneState};
 use crate::model::{RigidMotion, Solid, SolidModel};
 use crate::system::collocation::LARGEST_POISSON;
@@ -44,6 +45,8 @@ pub struct SolidCase {
     pub settings: SolidSettings,
     /// How its cracks grow, if they do.
     pub growth: Option<SolidGrowthSettings>,
+    /// How far cohesive cracks are loaded, if there are some.
+    pub loading: Option<LoadingSettings>,
     /// The case file.
     pub path: PathBuf,
     /// Its text.
@@ -91,9 +94,9 @@ impl SolidCase {
         let document = Document::parse(text, overrides, &mut problems);
         let built = if problems.is_empty() { build(&document, path, &mut problems) } else { None };
         match built {
-            Some(Built { model, settings, growth, notes }) if problems.is_empty() => {
+            Some(Built { model, settings, growth, loading, notes }) if problems.is_empty() => {
                 let (path, text, overrides) = (path.into(), text.into(), overrides.to_vec());
-                Ok(Self { model, settings, growth, path, text, overrides, notes })
+                Ok(Self { model, settings, growth, loading, path, text, overrides, notes })
             }
             _ => {
                 problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
@@ -131,6 +134,7 @@ struct Built {
     model: SolidModel,
     settings: SolidSettings,
     growth: Option<SolidGrowthSettings>,
+    loading: Option<LoadingSettings>,
     notes: Vec<Problem>,
 }
 
@@ -166,6 +170,7 @@ fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Optio
         rigid_motion,
     };
     let title = file.title.clone().unwrap_or_else(|| super::build::default_title(path));
+    let (cohesive, loading) = cohesive::cohesive(&file, cracks.cohesive, &mut report).unzip();
     let model = SolidModel {
         title,
         body,
@@ -173,10 +178,11 @@ fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Optio
         cracks: cracks.surfaces,
         yield_stress: file.material.yield_stress,
         solid,
+        cohesive,
     };
     let (settings, plan) = settings?;
     let growth = growth::growth(&file, &model.body, plan, &mut report);
-    Some(Built { model, settings, growth, notes: report.notes })
+    Some(Built { model, settings, growth, loading, notes: report.notes })
 }
 
 /// Stand for required sections that are faulty.

@@ -1,6 +1,8 @@
 //! What the case file of a solid may say. Shape only: ranges and sense are checked in the files beside.
 
+use super::cohesive::{Notch, SolidCohesive};
 use super::growth::SolidGrowth;
+use crate::analysis::LoadingSettings;
 use crate::case::files::FileAccess;
 use crate::case::schema::{Names, RigidMotion, Scalar};
 use crate::nodes::solid::NodesOnFronts;
@@ -73,6 +75,9 @@ pub(in crate::case) struct SolidFile {
     /// How cracks grow; without it they stay as they are.
     #[serde(default)]
     pub growth: Option<SolidGrowth>,
+    /// How far the load is followed where cracks are cohesive.
+    #[serde(default)]
+    pub loading: Option<LoadingSettings>,
 }
 
 /// Numerical method.
@@ -94,6 +99,9 @@ pub(in crate::case) struct SolidMaterial {
     /// Yield stress [stress]: with it, plastic zones that are too large for linear elasticity are told.
     #[serde(default)]
     pub yield_stress: Option<f64>,
+    /// Softening of cohesive cracks.
+    #[serde(default)]
+    pub cohesive: Option<SolidCohesive>,
 }
 
 /// The body, one of these.
@@ -206,6 +214,13 @@ pub(in crate::case) struct SolidCrack {
     /// Pressure on both faces [stress]; positive pushes them apart.
     #[serde(default)]
     pub pressure: Option<f64>,
+    /// Whether its faces are tied until they reach the strength, and then open by `[material.cohesive]`.
+    #[serde(default)]
+    pub cohesive: bool,
+    /// Boxes in which a cohesive crack is open and free from the beginning.
+    #[serde(default)]
+    #[schemars(length(max = 1000))]
+    pub notch: Vec<Notch>,
 }
 
 /// A disc.

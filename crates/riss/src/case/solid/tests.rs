@@ -189,3 +189,34 @@ fn gmsh_models_give_one_part_for_each_physical_surface() {
     // The reader of plane meshes refuses solids as before.
     assert!(crate::case::gmsh::read_gmsh(text.as_bytes()).unwrap_err().to_string().contains("is a solid"));
 }
+
+#[test]
+fn cohesive_cracks_have_a_law_and_notches() {
+    let crack = "crack = [{ cohesive = true, polygon = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], \
+        notch = [{ lower = [1, -2, -1], upper = [2, 2, 1] }] }]\n";
+    let load = "rigid_motion = 'mean-is-zero'\nremote_stress.zz = 1\n";
+    let law = "material.cohesive = { strength = 3, fracture_energy = 0.1, softening = 'linear' }\n";
+    let case = parse(
+        &format!("{HEAD}{law}{BOX}{load}{crack}")
+            .replace("material = { young = 1000, poisson = 0.3 }", "material.young = 1000\nmaterial.poisson = 0.3"),
+    );
+    let cohesive = case.model.cohesive.as_ref().unwrap();
+    assert_eq!(cohesive.law.strength, 3.0);
+    let notched = case.model.cohesive_crack(0).unwrap();
+    assert!(notched.is_notch(Vector3::new(1.5, 0.0, 0.0)) && !notched.is_notch(Vector3::zeros()));
+    assert_eq!(case.loading, Some(crate::analysis::LoadingSettings::default()));
+
+    let without = problems(&format!("{HEAD}{BOX}{load}{crack}"));
+    assert_eq!(without, ["crack[0].cohesive: there is no law for it"]);
+    let idle = problems(&format!("{HEAD}{BOX}{load}loading.steps = 3"));
+    assert_eq!(idle, ["loading: no crack is cohesive"]);
+    let disc = "crack = [{ disc = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }, notch = [{ lower = [0, 0, 0], upper = [1, 1, 1] }] }]";
+    assert_eq!(problems(&format!("{HEAD}{BOX}{load}{disc}")), ["crack[0].notch: only a cohesive crack has notches"]);
+    let weak = format!("{HEAD}{BOX}{load}{crack}loading.largest_displacement = -1\n")
+        .replace("poisson = 0.3", "poisson = 0.3, cohesive = { strength = 0, fracture_energy = -1 }");
+    let found = problems(&weak);
+    assert_eq!(found.len(), 3, "{found:?}");
+    let growing = format!("{HEAD}{BOX}{load}{crack}growth = {{ steps = 1, increment = 1, criterion.stress-intensity-factors = {{ exponent = 2 }} }}")
+        .replace("poisson = 0.3", "poisson = 0.3, cohesive = { strength = 3, fracture_energy = 1 }");
+    assert!(problems(&growing).iter().any(|p| p.starts_with("growth:")));
+}

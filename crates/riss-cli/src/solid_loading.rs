@@ -1,0 +1,138 @@
+//! `riss run` of a solid with cohesive cracks.
+
+use crate::progress::{Progress, peak_memory_bytes};
+use crate::run::RunArguments;
+use crate::table::number;
+use crate::{DONE, STOPPED, desktop, interrupt, results};
+use riss::analysis::{
+    GrowthEndKind, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, Observer, Stage, Warning, solid_loading,
+};
+use riss::case::SolidCase;
+use riss::model::CohesiveModel;
+use riss::output::{LoadingWriter, REPORT_FILE, RunInfo, RunStatus, SolidResults};
+use std::io;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Loads a solid and says how it broke; returns the exit code.
+pub fn load(
+    arguments: &RunArguments,
+    case: &SolidCase,
+    cohesive: &CohesiveModel,
+    loading: &LoadingSettings,
+    dir: &Path,
+    progress: Progress,
+) -> u8 {
+    let followed = match follow(case, cohesive, loading, dir, progress) {
+        Ok(Some(followed)) => followed,
+        Ok(None) => return crate::fail("stopped before the load curve was written"),
+        Err(message) => return crate::fail(&message),
+    };
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&followed.results);
+        crate::print(&format!("{}\n", text.unwrap_or_default()));
+    } else {
+        crate::print(&format!(
+            "{}\n{}\n{}",
+            case.model.title,
+            summary(&followed.record),
+            results::listed(&followed.files)
+        ));
+    }
+    if arguments.open {
+        desktop::open(&dir.join(REPORT_FILE));
+    }
+    if followed.record.end.kind == GrowthEndKind::Failed { STOPPED } else { DONE }
+}
+
+/// A load curve that was written.
+pub struct Followed {
+    record: LoadingRecord,
+    /// What stands in `results.json`.
+    pub results: SolidResults,
+    files: Vec<PathBuf>,
+}
+
+/// Loads a solid and writes what it does; none if Ctrl-C came before the end.
+///
+/// # Errors
+/// Why there are no results.
+pub fn follow(
+    case: &SolidCase,
+    cohesive: &CohesiveModel,
+    loading: &LoadingSettings,
+    dir: &Path,
+    progress: Progress,
+) -> Result<Option<Followed>, String> {
+    let unwritten = |e: &io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(e));
+    let writer = LoadingWriter::new(dir).map_err(|e| unwritten(&e))?;
+    let mut watch = Watch { writer, progress, error: None };
+    let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, &mut watch);
+    let wall_time_s = watch.progress.finish();
+    if let Some(e) = &watch.error {
+        return Err(unwritten(e));
+    }
+    let Some(record) = outcome.map_err(|e| e.to_string())? else { return Ok(None) };
+    let is_done = record.end.kind != GrowthEndKind::Failed;
+    let info = RunInfo {
+        title: case.model.title.clone(),
+        method: "collocation".into(),
+        units: None,
+        status: if is_done { RunStatus::Done } else { RunStatus::Stopped },
+        wall_time_s,
+        stage_time_s: std::mem::take(&mut watch.progress.stage_time_s),
+        peak_memory_bytes: peak_memory_bytes(),
+    };
+    let results = watch.writer.results(&case.model, &info, &record).ok_or("the load curve has no peak")?;
+    let files = watch.writer.finish(results.clone()).map_err(|e| unwritten(&e))?;
+    Ok(Some(Followed { record, results, files }))
+}
+
+/// What happened, in words.
+fn summary(record: &LoadingRecord) -> String {
+    let say = |p: &LoadPoint| {
+        format!(
+            "load {} at displacement {}, {} dissipated, {} of crack",
+            number(p.load),
+            number(p.displacement),
+            number(p.dissipated_energy),
+            number(p.crack_area)
+        )
+    };
+    let last = record.curve.len() - 1;
+    format!(
+        "first crack: {}\npeak:        {}\nend:         {}\nloading ended after {last} steps: {}\n",
+        say(&record.curve[1.min(last)]),
+        say(&record.curve[record.peak]),
+        say(&record.curve[last]),
+        record.end.reason
+    )
+}
+
+/// Writes the steps with fields.
+struct Watch {
+    writer: LoadingWriter,
+    progress: Progress,
+    error: Option<io::Error>,
+}
+
+impl Observer for Watch {
+    fn stage(&mut self, stage: Stage) {
+        self.progress.stage(stage);
+    }
+
+    fn warning(&mut self, warning: &Warning) {
+        self.progress.warning(warning);
+    }
+
+    fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {
+        match self.writer.write_step(step) {
+            Ok(()) if interrupt::is_asked() => ControlFlow::Break(()),
+            Ok(()) => ControlFlow::Continue(()),
+            Err(e) => {
+                self.error = Some(e);
+                ControlFlow::Break(())
+            }
+        }
+    }
+}

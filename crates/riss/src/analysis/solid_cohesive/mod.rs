@@ -1,0 +1,293 @@
+//! Cohesive cracks on given surfaces: tied until they reach their strength, then opening along the path of equilibrium.
+//!
+//! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with what loads do in
+//! [`work`] and the faces' areas in [`areas`]; [`path`] then follows the softening of all pairs at once.
+
+mod areas;
+mod condensed;
+mod path;
+mod settings;
+mod work;
+
+use super::record::{GrowthEnd, GrowthEndKind, Observer, Stage};
+use super::solid_record::SolidResult;
+use super::solid_static::{Placed, SolidSettings, Solved};
+use crate::error::Result;
+use crate::material::CohesiveLaw;
+use crate::math::{Vector, Vector3};
+use crate::model::{CohesiveModel, SolidModel};
+use crate::system::{CollocationSolution, CollocationSystem, TiedFaces, TiedPair};
+use areas::{FaceArea, face_areas};
+use condensed::{Condensed, Parting, TiedBody};
+pub use path::CohesiveState;
+use path::Path;
+use serde::{Deserialize, Serialize};
+pub use settings::LoadingSettings;
+use work::Work;
+
+/// Pairs with less than this share of cohesive area are free.
+const LEAST_SHARE: f64 = 0.02;
+/// Faces that pass on more shear than this, over the strength, must be let slide.
+const STICKS: f64 = 0.05;
+/// Steps with files of their fields, besides the first, that of the peak and the last.
+const PICTURES: usize = 10;
+
+/// A point of the load curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LoadPoint {
+    /// Factor on all loads and prescribed displacements.
+    pub load_factor: f64,
+    /// Resultant of the loads, or what the prescribed displacements take [stress·length²].
+    pub load: f64,
+    /// Its displacement: the load does its work on it [length].
+    pub displacement: f64,
+    /// Area that has reached its strength [area].
+    pub crack_area: f64,
+    /// Energy dissipated by the cracks [stress·length³].
+    pub dissipated_energy: f64,
+    /// Energy stored in the body and in unbroken bonds [stress·length³].
+    pub elastic_energy: f64,
+    /// Work of the load so far, by the trapezoidal rule [stress·length³].
+    pub external_work: f64,
+}
+
+/// A state of the path with its fields.
+#[derive(Clone, Debug)]
+pub struct LoadingStep {
+    /// Index of its point on the load curve.
+    pub point: usize,
+    /// The point.
+    pub values: LoadPoint,
+    /// The solution.
+    pub result: SolidResult,
+    /// Traction that pulls the faces together along the normal, for each crack at the places of its opening [stress].
+    pub tractions: Vec<Vec<f64>>,
+    /// Whether it is the one with the greatest load.
+    pub is_peak: bool,
+}
+
+/// The whole path.
+#[derive(Clone, Debug)]
+pub struct LoadingRecord {
+    /// Load curve from rest.
+    pub curve: Vec<LoadPoint>,
+    /// Index of the greatest load.
+    pub peak: usize,
+    /// Why it ended.
+    pub end: GrowthEnd,
+}
+
+/// A pair with its area.
+struct Bond {
+    /// Index among the pairs of the cloud.
+    pair: usize,
+    area: FaceArea,
+}
+
+/// Loads a solid with cohesive cracks; none if the observer ended it. Steps with fields reach the observer in order.
+///
+/// # Errors
+/// Those of nodes, shape functions and solver.
+pub fn solid_loading(
+    model: &SolidModel,
+    cohesive: &CohesiveModel,
+    settings: &SolidSettings,
+    loading: &LoadingSettings,
+    observer: &mut dyn Observer,
+) -> Result<Option<LoadingRecord>> {
+    let mut placed = Placed::of(model, settings, observer)?;
+    observer.stage(Stage::Assembly);
+    let system = placed.collocation.assemble()?;
+    let (pairs, bonds) = bonds(model, &placed, &system, settings);
+    let tied = TiedFaces::new(&system, pairs);
+    let work = Work::new(model, &placed.collocation, &settings.spacing)?;
+    observer.stage(Stage::Solve);
+    let body = TiedBody::new(&placed.collocation, &system, &tied, work)?;
+    let slides = cohesive.law.shear_ratio > 0.0;
+    let mut condensed = Condensed::new(&body, if slides { Parting::Full } else { Parting::Normal })?;
+    let mut followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds);
+    if !slides && followed.most_shear > STICKS * cohesive.law.strength {
+        condensed = Condensed::new(&body, Parting::Full)?;
+        followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds);
+    }
+    let Followed { curve, states, end, .. } = followed;
+    let peak = (0..curve.len()).fold(0, |m, k| if curve[k].load.abs() > curve[m].load.abs() { k } else { m });
+    for point in pictures(&curve, peak) {
+        observer.stage(Stage::Solve);
+        let state = &states[point];
+        let openings = openings(&condensed, &tied, state);
+        let (u, effort) = body.solve(state.load_factor, &openings)?;
+        let displacements = u.chunks_exact(3).map(Vector::from_column_slice).collect();
+        let tractions = tractions(model, &placed, &condensed, &bonds, state);
+        let solved = Solved::new(placed, CollocationSolution { displacements, effort });
+        let (result, again) = solved.result_and_place(model, settings, observer)?;
+        placed = again;
+        let step = LoadingStep { point, values: curve[point], result, tractions, is_peak: point == peak };
+        if observer.loading_step(&step).is_break() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(LoadingRecord { curve, peak, end }))
+}
+
+/// The pairs that are tied.
+fn bonds(
+    model: &SolidModel,
+    placed: &Placed,
+    system: &CollocationSystem<3>,
+    settings: &SolidSettings,
+) -> (Vec<TiedPair<3>>, Vec<Bond>) {
+    let (mut pairs, mut bonds) = (vec![], vec![]);
+    let positions = &placed.collocation.cloud().positions;
+    for crack in 0..model.cracks.len() {
+        let Some(cohesive) = model.cohesive_crack(crack) else { continue };
+        let own: Vec<usize> = (0..placed.pairs.len()).filter(|p| placed.pairs[*p].crack as usize == crack).collect();
+        let places: Vec<Vector3> = own.iter().map(|p| positions[placed.pairs[*p].nodes[0] as usize]).collect();
+        let areas = face_areas(model, crack, cohesive, &places, &settings.spacing);
+        let surface = &model.cracks[crack].surface;
+        for ((pair, place), area) in own.into_iter().zip(places).zip(areas) {
+            let foot = surface.closest(place);
+            let normal = surface.normal_at(foot.triangle, foot.position);
+            let nodes = placed.pairs[pair].nodes.map(|i| i as usize);
+            if area.share() >= LEAST_SHARE
+                && let Some(tied) = TiedPair::new(nodes, normal, system)
+            {
+                pairs.push(tied);
+                bonds.push(Bond { pair, area });
+            }
+        }
+    }
+    (pairs, bonds)
+}
+
+/// A path with its states.
+struct Followed {
+    curve: Vec<LoadPoint>,
+    states: Vec<CohesiveState>,
+    end: GrowthEnd,
+    /// Largest shear between opened faces that cannot slide [stress].
+    most_shear: f64,
+}
+
+fn follow(
+    condensed: &Condensed,
+    work: &Work,
+    law: &CohesiveLaw,
+    loading: &LoadingSettings,
+    bonds: &[Bond],
+) -> Followed {
+    let shares: Vec<f64> = bonds.iter().map(|b| b.area.share()).collect();
+    let mut path = Path::new(condensed, law, &shares);
+    let mut followed = Followed {
+        curve: vec![LoadPoint::default()],
+        states: vec![path.state.clone()],
+        end: GrowthEnd { kind: GrowthEndKind::NoTipGrows, reason: "no load opens a cohesive crack".into() },
+        most_shear: 0.0,
+    };
+    let mut done = [0.0; 2];
+    let mut goes_on = path.begin();
+    let mut greatest = 0.0f64;
+    while goes_on {
+        let tractions = path.tractions();
+        let now = condensed.work(path.state.load_factor, &path.state.openings);
+        let before = followed.curve[followed.curve.len() - 1];
+        let rise = path.state.load_factor - before.load_factor;
+        let external_work = before.external_work
+            + 0.5 * (path.state.load_factor + before.load_factor) * (now[0] - done[0])
+            + 0.5 * (now[1] + done[1]) * rise;
+        done = now;
+        let mut point = point(&path.state, work, law, bonds, now);
+        point.external_work = external_work;
+        followed.curve.push(point);
+        followed.states.push(path.state.clone());
+        for pair in (0..bonds.len()).filter(|k| path.state.is_open[*k]) {
+            let [_, s, t] = condensed.of_pair(pair, &tractions);
+            let is_stuck = condensed.columns[pair + 1] == condensed.columns[pair] + 1;
+            followed.most_shear = followed.most_shear.max(if is_stuck { s.hypot(t) } else { 0.0 });
+        }
+        greatest = greatest.max(point.load.abs());
+        let end = |kind, reason: String| Some(GrowthEnd { kind, reason });
+        let limit = loading.largest_displacement.filter(|u| point.displacement.abs() >= *u);
+        let ended = if point.load.abs() <= loading.stop_load * greatest {
+            end(GrowthEndKind::LimitReached, format!("the load has fallen to {} of its peak", loading.stop_load))
+        } else if let Some(limit) = limit {
+            end(GrowthEndKind::LimitReached, format!("the displacement has reached {limit}"))
+        } else if followed.curve.len() > loading.steps {
+            end(GrowthEndKind::StepsDone, format!("{} steps are done", loading.steps))
+        } else {
+            None
+        };
+        if let Some(end) = ended {
+            followed.end = end;
+            break;
+        }
+        goes_on = path.advance();
+        if !goes_on {
+            let reason = "no step of the path converges from here, however short".into();
+            followed.end = GrowthEnd { kind: GrowthEndKind::Failed, reason };
+        }
+    }
+    followed
+}
+
+/// Values of a state but for the external work.
+fn point(state: &CohesiveState, work: &Work, law: &CohesiveLaw, bonds: &[Bond], conjugates: [f64; 2]) -> LoadPoint {
+    let [by_loads, by_reactions] = conjugates;
+    let (load, displacement) = if work.prescribed > 0.0 {
+        (by_reactions / work.prescribed, state.load_factor * work.prescribed)
+    } else {
+        (state.load_factor * work.resultant, by_loads / work.resultant)
+    };
+    let mut point = LoadPoint { load_factor: state.load_factor, load, displacement, ..LoadPoint::default() };
+    for (k, bond) in bonds.iter().enumerate().filter(|(k, _)| state.is_open[*k]) {
+        point.crack_area += bond.area.cohesive;
+        point.dissipated_energy += bond.area.cohesive * law.dissipated(state.history[k]);
+    }
+    // That of the body, and what bonds give back when they unload to the origin.
+    point.elastic_energy = 0.5 * state.load_factor * (by_loads + by_reactions);
+    point
+}
+
+/// Points of the curve that get fields: evenly along it, as it is drawn, with the first, the peak and the last.
+fn pictures(curve: &[LoadPoint], peak: usize) -> Vec<usize> {
+    let extent = |get: fn(&LoadPoint) -> f64| curve.iter().map(|p| get(p).abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let (load, displacement) = (extent(|p| p.load), extent(|p| p.displacement));
+    let mut along = vec![0.0];
+    for w in curve.windows(2) {
+        let step = ((w[1].load - w[0].load) / load).hypot((w[1].displacement - w[0].displacement) / displacement);
+        along.push(along[along.len() - 1] + step);
+    }
+    let last = curve.len() - 1;
+    let at = |k: usize| along.partition_point(|s| *s < along[last] * k as f64 / PICTURES as f64).min(last);
+    let mut points: Vec<usize> = (1..PICTURES).map(at).chain([1.min(last), peak, last]).collect();
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
+fn openings(condensed: &Condensed, tied: &TiedFaces<3>, state: &CohesiveState) -> Vec<(usize, Vector3)> {
+    let opening = |k: usize| {
+        let w = condensed.opening_of(k, &state.openings);
+        tied.pairs[k].directions.iter().zip(w).map(|(e, w)| e * w).sum::<Vector3>()
+    };
+    (0..tied.pairs.len()).map(|k| (k, opening(k))).filter(|(_, w)| *w != Vector3::zeros()).collect()
+}
+
+/// Normal tractions in the order of [`super::OpenedCrack::positions`].
+fn tractions(
+    model: &SolidModel,
+    placed: &Placed,
+    condensed: &Condensed,
+    bonds: &[Bond],
+    state: &CohesiveState,
+) -> Vec<Vec<f64>> {
+    let all = condensed.tractions(state.load_factor, &state.openings);
+    let mut of_pair = vec![0.0; placed.pairs.len()];
+    bonds.iter().enumerate().for_each(|(k, b)| of_pair[b.pair] = condensed.of_pair(k, &all)[0] / b.area.share());
+    let of_crack = |crack: usize| {
+        let pairs = placed.pairs.iter().zip(&of_pair).filter(|(p, _)| p.crack as usize == crack);
+        let on_fronts = model.cracks[crack].fronts.iter().map(|f| f.points.len()).sum();
+        pairs.map(|(_, t)| *t).chain(std::iter::repeat_n(0.0, on_fronts)).collect()
+    };
+    (0..model.cracks.len()).map(of_crack).collect()
+}

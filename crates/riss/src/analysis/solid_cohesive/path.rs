@@ -1,0 +1,389 @@
+//! The path of equilibrium of a cohesive crack, through snap-backs.
+//!
+//! From pair to pair: for each set of opened pairs the load is found at which the next one just reaches its strength; the
+//! load factor is one more unknown, and that condition one more equation. Where the next pair is far, steps along the
+//! tangent of the path take its place [Riks1979].
+
+use super::condensed::Condensed;
+use crate::material::CohesiveLaw;
+use crate::system::dense_lu::DenseLu;
+use serde::{Deserialize, Serialize};
+
+/// Pairs this near to their strength open together.
+const TOGETHER: f64 = 1e-6;
+/// How far above its strength a pair may be in a converged step.
+const EXCESS: f64 = 1e-7;
+/// Largest residual of tractions over the strength.
+const RESIDUAL: f64 = 1e-9;
+/// Longest step: largest change of an opening over `G_f/f_t`, and of the load factor over itself.
+const LONGEST: f64 = 0.05;
+/// A step shorter than this is given up.
+const SHORTEST: f64 = 1e-9;
+/// Newton's iterations, and pairs that are tried as the next, in one step.
+const ITERATIONS: usize = 14;
+const TRIALS: usize = 8;
+/// A step may come out this many times as long as planned.
+const OVERSHOOT: f64 = 5.0;
+/// Rounds that settle which pairs unload.
+const SETTLINGS: usize = 6;
+
+/// Where a cohesive crack stands. The same state goes on in the same way, bit by bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CohesiveState {
+    /// Factor on all loads.
+    pub load_factor: f64,
+    /// Openings: components of each pair [length].
+    pub openings: Vec<f64>,
+    /// Largest effective opening of each pair so far [length].
+    pub history: Vec<f64>,
+    /// Whether each pair has reached its strength.
+    pub is_open: Vec<bool>,
+}
+
+/// What makes a step a step.
+enum Target<'a> {
+    /// A pair reaches its strength.
+    Reaches(usize),
+    /// The state lies in the plane across a tangent, at the predicted place.
+    Across { tangent: &'a Tangent, from: &'a CohesiveState, length: f64 },
+}
+
+/// Rates of load factor and openings along the path.
+#[derive(Clone)]
+struct Tangent {
+    load_factor: f64,
+    openings: Vec<f64>,
+}
+
+/// Follows the path.
+pub(super) struct Path<'a> {
+    condensed: &'a Condensed,
+    law: &'a CohesiveLaw,
+    /// Share of each pair that is cohesive.
+    shares: &'a [f64],
+    pub state: CohesiveState,
+    tangent: Option<Tangent>,
+    /// Pairs that the last step opened.
+    opened: Vec<usize>,
+    /// First critical load factor.
+    first: f64,
+    longest: f64,
+}
+
+impl<'a> Path<'a> {
+    /// At rest.
+    pub fn new(condensed: &'a Condensed, law: &'a CohesiveLaw, shares: &'a [f64]) -> Self {
+        let n = condensed.n_pairs();
+        let n_columns = condensed.columns[n];
+        let state = CohesiveState {
+            load_factor: 0.0,
+            openings: vec![0.0; n_columns],
+            history: vec![0.0; n],
+            is_open: vec![false; n],
+        };
+        Self { condensed, law, shares, state, tangent: None, opened: vec![], first: 0.0, longest: LONGEST }
+    }
+
+    /// Tractions of all pairs [stress].
+    pub fn tractions(&self) -> Vec<f64> {
+        self.condensed.tractions(self.state.load_factor, &self.state.openings)
+    }
+
+    /// Loads up to the first pair that reaches its strength; none does if the answer is no.
+    pub fn begin(&mut self) -> bool {
+        let most = (0..self.shares.len())
+            .map(|k| self.exhaustion(k, &self.condensed.tractions(1.0, &self.state.openings)))
+            .fold(0.0, f64::max);
+        if !(most > 0.0 && most.is_finite()) {
+            return false;
+        }
+        (self.first, self.state.load_factor) = (1.0 / most, 1.0 / most);
+        self.open_exhausted();
+        true
+    }
+
+    /// Goes one step on; no if none converges.
+    pub fn advance(&mut self) -> bool {
+        let Some(tangent) = self.find_tangent() else { return false };
+        let size = self.size(&tangent);
+        let mut length = self.longest / size;
+        loop {
+            let (mut candidate, mut shortened) = (self.next_pair(&tangent, length), false);
+            for _ in 0..TRIALS {
+                let reach = candidate.map_or(length, |c: (usize, f64)| c.1);
+                let mut trial = self.predicted(&tangent, reach);
+                let target = match candidate {
+                    Some((pair, _)) => Target::Reaches(pair),
+                    None => Target::Across { tangent: &tangent, from: &self.state, length: reach },
+                };
+                if !self.converge(&mut trial, &target) || !self.is_ahead(&tangent, &trial, length.max(reach)) {
+                    break;
+                }
+                match self.most_exceeded(&trial) {
+                    Some(pair) if candidate.is_some_and(|c| c.0 == pair) => break,
+                    Some(pair) => {
+                        candidate = Some((pair, reach));
+                        shortened = true;
+                    }
+                    None => {
+                        self.accept(trial, tangent);
+                        self.longest = if shortened { self.longest } else { (1.5 * self.longest).min(LONGEST) };
+                        return true;
+                    }
+                }
+            }
+            length *= 0.5;
+            self.longest = (0.5 * self.longest).max(SHORTEST);
+            if length * size < SHORTEST {
+                return false;
+            }
+        }
+    }
+
+    /// What changes of the load factor are measured by.
+    fn load_unit(&self) -> f64 {
+        self.state.load_factor.abs().max(self.first)
+    }
+
+    /// How far a pair is exhausted.
+    fn exhaustion(&self, pair: usize, tractions: &[f64]) -> f64 {
+        self.law.exhaustion(self.condensed.of_pair(pair, tractions).map(|t| t / self.shares[pair]))
+    }
+
+    /// Unknown columns.
+    fn open_columns(&self) -> Vec<(usize, usize)> {
+        let columns = &self.condensed.columns;
+        let open = (0..self.shares.len()).filter(|k| self.state.is_open[*k]);
+        open.flat_map(|k| (columns[k]..columns[k + 1]).map(move |c| (k, c))).collect()
+    }
+
+    /// Residuals of the opened pairs in their columns' order, and the tractions of all.
+    fn residuals(&self, unknown: &[(usize, usize)], trial: &CohesiveState) -> (Vec<f64>, Vec<f64>) {
+        let c = self.condensed;
+        let tractions = c.tractions(trial.load_factor, &trial.openings);
+        let own = |(pair, column): &(usize, usize)| {
+            let k = column - c.columns[*pair];
+            let cohesion = self.law.cohesion(c.opening_of(*pair, &trial.openings), trial.history[*pair]);
+            tractions[c.rows[*pair] + k] - self.shares[*pair] * cohesion.traction[k]
+        };
+        (unknown.iter().map(own).collect(), tractions)
+    }
+
+    /// The Jacobian of the residuals, with a last row.
+    ///
+    /// - `history`: of each pair, which decides whether it loads
+    /// - `last`: coefficients of the openings, then that of the load factor
+    fn factored(&self, unknown: &[(usize, usize)], trial: &CohesiveState, history: &[f64], last: &[f64]) -> DenseLu {
+        let c = self.condensed;
+        let n = unknown.len();
+        let cohesion: Vec<_> = unknown
+            .iter()
+            .map(|(pair, _)| self.law.cohesion(c.opening_of(*pair, &trial.openings), history[*pair]).tangent)
+            .collect();
+        DenseLu::new(n + 1, |i, j| {
+            if i == n {
+                return last[j];
+            }
+            let (pair, column) = unknown[i];
+            let k = column - c.columns[pair];
+            let row = c.rows[pair] + k;
+            if j == n {
+                return c.by_load(row);
+            }
+            let (other, opening) = unknown[j];
+            let own = if other == pair { cohesion[i][k][opening - c.columns[pair]] * self.shares[pair] } else { 0.0 };
+            c.by_opening(row, opening) - own
+        })
+    }
+
+    /// Newton's method; the trial is a solution if the answer is yes.
+    fn converge(&self, trial: &mut CohesiveState, target: &Target<'_>) -> bool {
+        let unknown = self.open_columns();
+        for _ in 0..ITERATIONS {
+            let (mut right, tractions) = self.residuals(&unknown, trial);
+            let (last, excess) = self.target_row(&unknown, trial, &tractions, target);
+            let largest = right.iter().fold(0.0, |m: f64, r| m.max(r.abs())) / self.law.strength;
+            if !largest.is_finite() {
+                return false;
+            }
+            if largest <= RESIDUAL && excess.abs() <= RESIDUAL {
+                return true;
+            }
+            right.push(excess);
+            self.factored(&unknown, trial, &trial.history, &last).solve_in_place(&mut right);
+            if right.iter().any(|v| !v.is_finite()) {
+                return false;
+            }
+            for ((_, column), change) in unknown.iter().zip(&right) {
+                trial.openings[*column] -= change;
+            }
+            trial.load_factor -= right[unknown.len()];
+        }
+        false
+    }
+
+    /// The last equation: its row, and by how much it fails.
+    fn target_row(
+        &self,
+        unknown: &[(usize, usize)],
+        trial: &CohesiveState,
+        tractions: &[f64],
+        target: &Target<'_>,
+    ) -> (Vec<f64>, f64) {
+        let c = self.condensed;
+        match target {
+            Target::Reaches(pair) => {
+                let own = c.of_pair(*pair, tractions).map(|t| t / self.shares[*pair]);
+                let gradient = self.law.exhaustion_gradient(own).map(|g| g / self.shares[*pair]);
+                let rows = c.rows[*pair]..c.rows[*pair + 1];
+                let along = |of_row: &dyn Fn(usize) -> f64| -> f64 {
+                    rows.clone().enumerate().map(|(k, row)| gradient[k] * of_row(row)).sum()
+                };
+                let mut last: Vec<f64> =
+                    unknown.iter().map(|(_, column)| along(&|row| c.by_opening(row, *column))).collect();
+                last.push(along(&|row| c.by_load(row)));
+                (last, self.law.exhaustion(own) - 1.0)
+            }
+            Target::Across { tangent, from, length } => {
+                let (scale, first) = (self.law.opening_scale(), self.load_unit());
+                let square = |v: f64, unit: f64| (v / unit) * (v / unit);
+                let norm = unknown.iter().map(|(_, c)| square(tangent.openings[*c], scale)).sum::<f64>()
+                    + square(tangent.load_factor, first);
+                let (to_openings, to_load) =
+                    (1.0 / (scale * scale * norm * length), 1.0 / (first * first * norm * length));
+                let mut last: Vec<f64> = unknown.iter().map(|(_, c)| tangent.openings[*c] * to_openings).collect();
+                last.push(tangent.load_factor * to_load);
+                let done: f64 = unknown
+                    .iter()
+                    .zip(&last)
+                    .map(|((_, c), l)| l * (trial.openings[*c] - from.openings[*c]))
+                    .sum::<f64>()
+                    + last[unknown.len()] * (trial.load_factor - from.load_factor);
+                (last, done - 1.0)
+            }
+        }
+    }
+
+    /// Direction of the path, onwards.
+    fn find_tangent(&self) -> Option<Tangent> {
+        let unknown = self.open_columns();
+        let n = unknown.len();
+        let c = self.condensed;
+        let mut last = vec![0.0; n + 1];
+        if let (true, Some(before)) = (self.opened.is_empty(), &self.tangent) {
+            let (scale, first) = (self.law.opening_scale(), self.load_unit());
+            let units = unknown.iter().map(|(_, column)| before.openings[*column] / (scale * scale));
+            last.iter_mut().zip(units.chain([before.load_factor / (first * first)])).for_each(|(l, v)| *l = v);
+        } else {
+            let is_new = |pair: usize, column: usize| self.opened.contains(&pair) && column == c.columns[pair];
+            unknown.iter().zip(&mut last).for_each(|((p, column), l)| *l = f64::from(is_new(*p, *column)));
+        }
+        let largest = last.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        last.iter_mut().for_each(|v| *v /= largest);
+        // Whoever is at the largest opening so far is taken to go on, until its rate says otherwise.
+        let mut history = self.state.history.clone();
+        for _ in 0..SETTLINGS {
+            let mut right = vec![0.0; n + 1];
+            right[n] = 1.0;
+            self.factored(&unknown, &self.state, &history, &last).solve_in_place(&mut right);
+            if right.iter().any(|v| !v.is_finite()) {
+                return None;
+            }
+            let mut openings = vec![0.0; self.state.openings.len()];
+            unknown.iter().zip(&right).for_each(|((_, column), v)| openings[*column] = *v);
+            let mut changed = false;
+            for pair in (0..self.shares.len()).filter(|k| self.state.is_open[*k]) {
+                let (w, rate) = (c.opening_of(pair, &self.state.openings), c.opening_of(pair, &openings));
+                let loads = self.law.effective(w) >= history[pair];
+                let beta = self.law.shear_ratio.powi(2);
+                let growth = w[0].max(0.0) * rate[0] + beta * (w[1] * rate[1] + w[2] * rate[2]);
+                if loads && growth < 0.0 {
+                    history[pair] *= 1.0 + 1e-6;
+                    changed = true;
+                }
+            }
+            if !changed {
+                return Some(Tangent { load_factor: right[n], openings });
+            }
+        }
+        None
+    }
+
+    /// Largest rate of a tangent, in units of its step.
+    fn size(&self, tangent: &Tangent) -> f64 {
+        let largest = tangent.openings.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        (largest / self.law.opening_scale()).max(tangent.load_factor.abs() / self.load_unit())
+    }
+
+    /// The pair that reaches its strength first within a length, and where.
+    fn next_pair(&self, tangent: &Tangent, length: f64) -> Option<(usize, f64)> {
+        let now = self.tractions();
+        let rates = self.condensed.tractions(tangent.load_factor, &tangent.openings);
+        let mut first: Option<(usize, f64)> = None;
+        for pair in (0..self.shares.len()).filter(|k| !self.state.is_open[*k]) {
+            let own = self.condensed.of_pair(pair, &now).map(|t| t / self.shares[pair]);
+            let gradient = self.law.exhaustion_gradient(own);
+            let rate = self.condensed.of_pair(pair, &rates).map(|t| t / self.shares[pair]);
+            let growth: f64 = gradient.iter().zip(rate).map(|(g, r)| g * r).sum();
+            let reach = (1.0 - self.law.exhaustion(own)) / growth;
+            if growth > 0.0 && reach < first.map_or(length, |f| f.1) {
+                first = Some((pair, reach.max(0.0)));
+            }
+        }
+        first
+    }
+
+    fn predicted(&self, tangent: &Tangent, length: f64) -> CohesiveState {
+        let mut trial = self.state.clone();
+        trial.load_factor += length * tangent.load_factor;
+        trial.openings.iter_mut().zip(&tangent.openings).for_each(|(w, rate)| *w += length * rate);
+        trial
+    }
+
+    /// Whether a solution lies onwards and near.
+    fn is_ahead(&self, tangent: &Tangent, trial: &CohesiveState, length: f64) -> bool {
+        let (scale, first) = (self.law.opening_scale(), self.load_unit());
+        let load = (trial.load_factor - self.state.load_factor) / first;
+        let changes = trial.openings.iter().zip(&self.state.openings).map(|(a, b)| (a - b) / scale);
+        let (mut along, mut largest) = (load * tangent.load_factor / first, load.abs());
+        for (change, rate) in changes.zip(&tangent.openings) {
+            along += change * rate / scale;
+            largest = largest.max(change.abs());
+        }
+        along >= 0.0 && largest <= OVERSHOOT * length * self.size(tangent)
+    }
+
+    /// The tied pair that is furthest above its strength.
+    fn most_exceeded(&self, trial: &CohesiveState) -> Option<usize> {
+        let tractions = self.condensed.tractions(trial.load_factor, &trial.openings);
+        let tied = (0..self.shares.len()).filter(|k| !self.state.is_open[*k]);
+        let (pair, most) = tied.map(|k| (k, self.exhaustion(k, &tractions))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most > 1.0 + EXCESS).then_some(pair)
+    }
+
+    fn accept(&mut self, trial: CohesiveState, tangent: Tangent) {
+        self.state = trial;
+        for pair in 0..self.shares.len() {
+            if self.state.is_open[pair] {
+                let effective = self.law.effective(self.condensed.opening_of(pair, &self.state.openings));
+                self.state.history[pair] = self.state.history[pair].max(effective);
+            }
+        }
+        self.tangent = Some(tangent);
+        self.open_exhausted();
+    }
+
+    /// Opens the pairs at their strength.
+    fn open_exhausted(&mut self) {
+        let tractions = self.tractions();
+        self.opened = (0..self.shares.len())
+            .filter(|k| !self.state.is_open[*k] && self.exhaustion(*k, &tractions) >= 1.0 - TOGETHER)
+            .collect();
+        for pair in self.opened.clone() {
+            self.state.is_open[pair] = true;
+            self.state.history[pair] = self.law.first_opening();
+            self.state.openings[self.condensed.columns[pair]] = self.law.first_opening();
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What loads and reactions do: linear functions of the displacements, by integration over the boundary.
+
+use crate::approximation::{FitBuffer, ShapeFunctions};
+use crate::error::Result;
+use crate::geometry::triangle::{Triangle, area_vector};
+use crate::integration::rules::triangle_rule;
+use crate::math::{Vector3, axis};
+use crate::model::{SolidDirection, SolidModel, SurfaceConditions, SurfacePoint};
+use crate::nodes::solid::SolidSpacing;
+use crate::system::Collocation;
+use rayon::prelude::*;
+
+/// Longest edge of a triangle of integration over the spacing of nodes there.
+const EDGE: f64 = 1.0;
+/// Depth from which points on the boundary look at nodes, over the spacing there.
+const SIGHT: f64 = 1e-3;
+/// Loads count as balanced if their sum is below this share of their sizes.
+const BALANCED: f64 = 1e-3;
+
+/// Work of unit loads on displacements, and of the reactions of displacements on the prescribed ones.
+pub(super) struct Work {
+    /// Coefficient of each displacement: of loads [stress·length²], of reactions the same.
+    coefficients: [Vec<Vector3>; 2],
+    /// Resultant of the loads: half of their sum of sizes where they balance [stress·length²].
+    pub resultant: f64,
+    /// Largest prescribed displacement [length].
+    pub prescribed: f64,
+}
+
+/// What a point of integration adds.
+struct Share {
+    loads: Vec<(u32, Vector3)>,
+    reactions: Vec<(u32, Vector3)>,
+    force: Vector3,
+    prescribed: f64,
+}
+
+impl Work {
+    /// Integrates over all loaded and moved parts of the boundary.
+    ///
+    /// # Errors
+    /// Those of the shape functions.
+    pub fn new(model: &SolidModel, collocation: &Collocation<3>, spacing: &SolidSpacing) -> Result<Self> {
+        let mut triangles = vec![];
+        for t in 0..model.body.triangles().len() as u32 {
+            let part = model.body.part_of(t);
+            let whole = model.body.corners(t);
+            divide(whole, spacing, &mut |piece| triangles.push((part, model.body.normals()[t as usize], piece)));
+        }
+        let rule = triangle_rule(2);
+        let points: Vec<_> = triangles
+            .iter()
+            .flat_map(|(part, normal, corners)| {
+                let area = 0.5 * area_vector(*corners).norm();
+                rule.iter().map(move |(l, w)| {
+                    let p = corners[0] * l[0] + corners[1] * l[1] + corners[2] * l[2];
+                    (*part, *normal, p, w * area)
+                })
+            })
+            .collect();
+        let share = |(fit, shape): &mut (FitBuffer<3>, ShapeFunctions<3>),
+                     (part, normal, position, weight): &(u32, Vector3, Vector3, f64)| {
+            let conditions = &model.solid.parts[*part as usize];
+            let sight = position - normal * (SIGHT * spacing.at(*position));
+            let at = SurfacePoint { position: *position, normal: *normal, sight };
+            let mut share = Share { loads: vec![], reactions: vec![], force: Vector3::zeros(), prescribed: 0.0 };
+            let (free, moved) = split(conditions, &at);
+            let traction = free * conditions.traction.value(&at);
+            share.prescribed = moved.norm();
+            if traction == Vector3::zeros() && share.prescribed == 0.0 {
+                return Ok(share);
+            }
+            collocation.approximation.at_point(*position, sight, fit, shape)?;
+            share.force = traction * *weight;
+            let (lambda, mu) = (collocation.solid.material.lame(), collocation.solid.material.shear());
+            for (k, i) in shape.neighbors.iter().enumerate() {
+                share.loads.push((*i, share.force * shape.values[k]));
+                let g = &shape.gradients[k];
+                // (σ(u) n) · ū by each component of u.
+                let reaction =
+                    g * (lambda * moved.dot(normal)) + moved * (mu * g.dot(normal)) + normal * (mu * g.dot(&moved));
+                share.reactions.push((*i, reaction * *weight));
+            }
+            Ok(share)
+        };
+        let shares = points.par_iter().map_init(Default::default, share).collect::<Result<Vec<_>>>()?;
+        let n = collocation.cloud().len();
+        let mut work = Self {
+            coefficients: [vec![Vector3::zeros(); n], vec![Vector3::zeros(); n]],
+            resultant: 0.0,
+            prescribed: 0.0,
+        };
+        let (mut sum, mut sizes) = (Vector3::zeros(), 0.0);
+        for share in shares {
+            share.loads.iter().for_each(|(i, c)| work.coefficients[0][*i as usize] += c);
+            share.reactions.iter().for_each(|(i, c)| work.coefficients[1][*i as usize] += c);
+            sum += share.force;
+            sizes += share.force.norm();
+            work.prescribed = work.prescribed.max(share.prescribed);
+        }
+        work.resultant = if sum.norm() > BALANCED * sizes { sum.norm() } else { 0.5 * sizes };
+        Ok(work)
+    }
+
+    /// Work of unit loads on displacements, and of their reactions on the prescribed displacements [stress·length³].
+    pub fn of(&self, displacements: &[f64]) -> [f64; 2] {
+        self.coefficients.each_ref().map(|c| {
+            let at = |i: usize| Vector3::from_column_slice(&displacements[3 * i..3 * i + 3]);
+            c.iter().enumerate().filter(|(_, c)| **c != Vector3::zeros()).map(|(i, c)| c.dot(&at(i))).sum()
+        })
+    }
+}
+
+/// The projector on free directions, and the displacement prescribed in the others.
+fn split(conditions: &SurfaceConditions<3>, at: &SurfacePoint<3>) -> (crate::math::Matrix<3>, Vector3) {
+    let (mut free, mut moved) = (crate::math::Matrix::<3>::identity(), Vector3::zeros());
+    for prescribed in &conditions.displacements {
+        let direction = match prescribed.direction {
+            SolidDirection::Fixed(d) => d,
+            SolidDirection::Normal => at.normal,
+        };
+        let rest = free * direction;
+        if let Some(unit) = rest.try_normalize(0.05) {
+            let value = prescribed.value.value(at).dot(&direction) - moved.dot(&direction);
+            moved += unit * (value / rest.norm());
+            free -= unit * unit.transpose();
+        }
+    }
+    debug_assert!((0..3).all(|d| axis::<3>(d).dot(&moved).is_finite()));
+    (free, moved)
+}
+
+/// Cuts a triangle in four until its edges are short.
+pub(super) fn divide(corners: Triangle, spacing: &SolidSpacing, visit: &mut dyn FnMut(Triangle)) {
+    let longest = (0..3).map(|k| (corners[k] - corners[(k + 1) % 3]).norm()).fold(0.0, f64::max);
+    let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+    if longest <= EDGE * spacing.at(center) {
+        return visit(corners);
+    }
+    let middles: [Vector3; 3] = std::array::from_fn(|k| (corners[k] + corners[(k + 1) % 3]) * 0.5);
+    for k in 0..3 {
+        divide([corners[k], middles[k], middles[(k + 2) % 3]], spacing, visit);
+    }
+    divide(middles, spacing, visit);
+}

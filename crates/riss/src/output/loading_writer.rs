@@ -1,0 +1,97 @@
+//! Writes what a solid with cohesive cracks does under load: the states with fields as they come, then curve and results.
+
+use super::report::REPORT_FILE;
+use super::solid_files::{cracks_with, nodes};
+use super::solid_report::solid_report;
+use super::solid_results::{LoadCurvePoint, SolidResults};
+use super::vtk::collection;
+use super::whole_file::write_whole;
+use super::{RESULTS_FILE, RunInfo};
+use crate::analysis::{LoadingRecord, LoadingStep, SolidResult};
+use crate::model::SolidModel;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Name of the load curve as a table.
+pub const LOAD_CURVE_FILE: &str = "load_curve.csv";
+
+/// The folder of a run with cohesive cracks.
+#[derive(Debug)]
+pub struct LoadingWriter {
+    dir: PathBuf,
+    steps: Vec<usize>,
+    at_peak: Option<SolidResult>,
+}
+
+impl LoadingWriter {
+    /// Starts anew in `dir`, which is made if needed.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(dir: &Path) -> io::Result<Self> {
+        fs::create_dir_all(dir)?;
+        match fs::remove_file(dir.join(RESULTS_FILE)) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
+            _ => {}
+        }
+        Ok(Self { dir: dir.into(), steps: vec![], at_peak: None })
+    }
+
+    /// Writes the fields of a step.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_step(&mut self, step: &LoadingStep) -> io::Result<()> {
+        write_whole(&self.dir.join(file_name("nodes", step.point)), &nodes(&step.result))?;
+        let surfaces = cracks_with(&step.result, Some(&step.tractions));
+        write_whole(&self.dir.join(file_name("cracks", step.point)), &surfaces)?;
+        self.steps.push(step.point);
+        if step.is_peak {
+            self.at_peak = Some(step.result.clone());
+        }
+        Ok(())
+    }
+
+    /// The results of the whole run, if its peak was written.
+    pub fn results(&self, model: &SolidModel, info: &RunInfo, record: &LoadingRecord) -> Option<SolidResults> {
+        let mut results = SolidResults::new(model, info, self.at_peak.as_ref()?, vec![]);
+        results.loaded(record);
+        Some(results)
+    }
+
+    /// Writes load curve, report and results; returns the paths, `results.json` last.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn finish(&self, mut results: SolidResults) -> io::Result<Vec<PathBuf>> {
+        let mut files = vec![];
+        for kind in ["nodes", "cracks"] {
+            let all: Vec<(usize, String)> = self.steps.iter().map(|s| (*s, file_name(kind, *s))).collect();
+            files.push((format!("{kind}.pvd"), collection(&all)));
+        }
+        files.push((LOAD_CURVE_FILE.into(), table(&results.load_curve)?));
+        let kinds = ["nodes", "cracks"].into_iter();
+        results.files = kinds.flat_map(|kind| self.steps.iter().map(move |s| file_name(kind, *s))).collect();
+        results.files.extend(files.iter().map(|f| f.0.clone()).chain([REPORT_FILE.to_string()]));
+        files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
+        files.push((RESULTS_FILE.into(), (serde_json::to_string_pretty(&results)? + "\n").into_bytes()));
+        let write = |(name, content): &(String, Vec<u8>)| {
+            let path = self.dir.join(name);
+            write_whole(&path, content).map(|()| path)
+        };
+        files.iter().map(write).collect()
+    }
+}
+
+fn file_name(kind: &str, step: usize) -> String {
+    format!("{kind}-{step:04}.vtu")
+}
+
+fn table(curve: &[LoadCurvePoint]) -> io::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(vec![]);
+    for point in curve {
+        writer.serialize(point)?;
+    }
+    writer.into_inner().map_err(|e| io::Error::other(e.to_string()))
+}

@@ -1,0 +1,73 @@
+//! Cohesive cracks against closed forms.
+
+use riss::analysis::{GrowthEndKind, LoadingRecord, LoadingStep, Observer, solid_loading};
+use riss::case::AnyCase;
+use riss::material::{CohesiveLaw, Softening};
+use std::ops::ControlFlow;
+
+#[derive(Default)]
+struct Kept(Vec<LoadingStep>);
+
+impl Observer for Kept {
+    fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {
+        self.0.push(step.clone());
+        ControlFlow::Continue(())
+    }
+}
+
+fn load(text: &str) -> (LoadingRecord, Vec<LoadingStep>) {
+    let case = AnyCase::parse(text, "case.toml".as_ref(), &[]).map_err(|e| e.to_string()).unwrap();
+    let AnyCase::Solid(case) = case else { panic!("a solid") };
+    let mut kept = Kept::default();
+    let cohesive = case.model.cohesive.as_ref().unwrap();
+    let record = solid_loading(&case.model, cohesive, &case.settings, &case.loading.unwrap(), &mut kept).unwrap();
+    (record.unwrap(), kept.0)
+}
+
+/// A bar that is pulled apart across one plane: everywhere the same opening.
+///
+/// With the stress σ = t(w), its elongation is L σ/E + w.
+#[test]
+fn a_bar_follows_the_law() {
+    let (young, length, area, strength, energy) = (30000.0, 40.0, 100.0, 3.0, 0.1);
+    for (softening, curve) in
+        [("exponential", Softening::Exponential), ("linear", Softening::Linear), ("bilinear", Softening::Bilinear)]
+    {
+        for ends in [
+            "support = [{ on = 'z-min', z = 0 }, { on = 'z-max', z = 0.01 }]",
+            "load = [{ on = 'z-max', traction = [0, 0, 1] }, { on = 'z-min', traction = [0, 0, -1] }]",
+        ] {
+            let (record, steps) = load(&format!(
+                "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = {young}, poisson = 0.2, \
+                 cohesive = {{ strength = {strength}, fracture_energy = {energy}, softening = '{softening}' }} }}\n\
+                 geometry.box = {{ lower = [0, 0, 0], upper = [10, 10, {length}] }}\nnodes.spacing = 3\n{ends}\n\
+                 crack = [{{ cohesive = true, polygon = [[0, 0, 18], [10, 0, 18], [10, 10, 18], [0, 10, 18]] }}]\n\
+                 loading.stop_load = 0.001"
+            ));
+            let law = CohesiveLaw { strength, fracture_energy: energy, softening: curve, shear_ratio: 0.0 };
+            let peak = record.curve[record.peak];
+            assert!((peak.load / (strength * area) - 1.0).abs() < 1e-5, "{softening} {ends}: {peak:?}");
+            assert_eq!(record.end.kind, GrowthEndKind::LimitReached, "{:?}", record.end);
+            for point in &record.curve {
+                let stress = point.load / area;
+                let opening = point.displacement - length * stress / young;
+                if point.crack_area > 0.0 {
+                    let expected = law.softening(opening.max(0.0))[0];
+                    assert!((stress - expected).abs() < 1e-4 * strength, "{softening}: {stress} {expected}");
+                }
+                let balance = point.external_work - point.elastic_energy - point.dissipated_energy;
+                assert!(balance.abs() < 2e-3 * energy * area, "{softening}: {point:?}");
+            }
+            let end = record.curve[record.curve.len() - 1];
+            let dissipated = law.dissipated(end.displacement - length * end.load / area / young) * area;
+            assert!((end.dissipated_energy / dissipated - 1.0).abs() < 1e-4, "{end:?} {dissipated}");
+            assert!(end.dissipated_energy > 0.98 * energy * area);
+            assert!((end.crack_area / area - 1.0).abs() < 1e-6);
+            assert!(steps.iter().any(|s| s.is_peak) && steps.last().unwrap().point == record.curve.len() - 1);
+            for step in &steps {
+                let stress = step.values.load / area;
+                assert!(step.tractions[0].iter().all(|t| (t - stress).abs() < 1e-4 * strength));
+            }
+        }
+    }
+}
