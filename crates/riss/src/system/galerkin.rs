@@ -137,6 +137,9 @@ pub fn cell_functions(discrete: &Discretization, cell: usize, fields: Fields, sc
         buffer.clear();
         buffer.resize(n_points * scratch.stride, 0.0);
     }
+    if n_points == 0 {
+        return Ok(());
+    }
     let outline = as_usize(&cells.edge_ranges[cell]);
     let is_plain = discrete.plain_cells[cell];
     if cells.smoothing.is_some() {

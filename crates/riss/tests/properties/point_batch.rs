@@ -13,10 +13,13 @@ use riss::crack::EndKind::{Mouth, Tip};
 use riss::geometry::aabb::Aabb;
 use riss::geometry::obstacles::Obstacles;
 use riss::integration::cells::as_usize;
+use riss::integration::{IntegrationSettings, Scheme};
 use riss::material::PlaneState;
 use riss::math::Vector2;
 use riss::nodes::Nodes;
 use riss::nodes::settings::{Graded, Layout};
+use riss::system::assemble;
+use riss::system::discretization::NodeLists;
 
 /// Difference between both ways over the size of the functions: fits with pivots above 0.02 keep this many digits.
 const ROUNDING: f64 = 1e-12;
@@ -206,5 +209,41 @@ proptest! {
             prop_assert!(discrete.approximation.evaluate_batch(Wanted::Gradients, &mut batch));
             check(&discrete.approximation, nodes, &points, &batch)?;
         }
+    }
+}
+
+/// Appends a cell without points, with and without neighbors, and checks that the matrix stays what it was.
+fn check_empty_cells(integration: IntegrationSettings, neighbors: &[u32]) {
+    let mut model = body(rectangle((0.0, 0.0), (1.0, 1.0)), PlaneState::Strain);
+    model.cracks.push(crack(&[(0.0, 0.4), (0.5, 0.5)], [Mouth, Tip]));
+    let mut settings = Settings { integration, ..Settings::default() };
+    settings.nodes.layout = Layout::Graded(Graded { spacing: Some(0.08), ..Graded::default() });
+    let mut discrete = discretize(&model, &settings, &mut Silent).expect("the nodes are dense enough");
+    let before = assemble(&model, &discrete, &settings.constraints).expect("all fits are regular").matrix;
+    for is_plain in [true, false] {
+        let (points, edges) = (discrete.cells.points.len() as u32, discrete.cells.edge_points.len() as u32);
+        discrete.cells.point_ranges.push(points..points);
+        discrete.cells.edge_ranges.push(edges..edges);
+        discrete.cells.corners.push(vec![]);
+        let mut lists: Vec<Vec<u32>> = discrete.cell_nodes.iter().map(<[u32]>::to_vec).collect();
+        lists.push(neighbors.to_vec());
+        discrete.cell_nodes = NodeLists::from_lists(&lists);
+        discrete.plain_cells.push(is_plain);
+        let after = assemble(&model, &discrete, &settings.constraints).expect("all fits are regular").matrix;
+        assert_eq!(before.columns, after.columns);
+        let size = before.blocks.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
+        for (a, b) in before.blocks.iter().flatten().zip(after.blocks.iter().flatten()) {
+            assert!((a - b).abs() <= 1e-14 * size, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn cells_without_points_add_nothing() {
+    for neighbors in [&[][..], &[0]] {
+        check_empty_cells(IntegrationSettings::default(), neighbors);
+        let nodal =
+            IntegrationSettings { scheme: Scheme::Nodal { stabilization: 0.5 }, ..IntegrationSettings::default() };
+        check_empty_cells(nodal, neighbors);
     }
 }
