@@ -25,13 +25,16 @@ const NARROW: f64 = 0.05;
 pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<Fields> {
     let material = &model.material;
     let triangulation = &discrete.triangulation;
-    let samples: Vec<(Vector2, Matrix2)> = (0..triangulation.copies.len())
+    // Neighbors and values too: they are needed again.
+    let samples: Vec<(Vector2, Matrix2, Vec<(u32, f64)>)> = (0..triangulation.copies.len())
         .into_par_iter()
         .with_min_len(64)
         .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
             let (at, sight) = (triangulation.position(i as u32), triangulation.copies[i].sight);
             discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
-            Ok((shape.value(&solution.parameters), material.stress(&shape.gradient(&solution.parameters))))
+            let stress = material.stress(&shape.gradient(&solution.parameters));
+            let pairs = shape.neighbors.iter().copied().zip(shape.values.iter().copied()).collect();
+            Ok((shape.value(&solution.parameters), stress, pairs))
         })
         .collect::<Result<_>>()?;
     let stress: Vec<Matrix2> = samples.iter().map(|s| s.1).collect();
@@ -42,18 +45,12 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
             nodal[*node as usize] = stress[copy];
         }
     }
-    let error_indicator = (0..stress.len())
-        .into_par_iter()
-        .with_min_len(64)
-        .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
-            let (at, sight) = (triangulation.position(i as u32), triangulation.copies[i].sight);
-            discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
-            let pairs = shape.neighbors.iter().zip(&shape.values);
-            let smoothed = pairs.fold(Matrix2::zeros(), |s, (&n, &v)| s + nodal[n as usize] * v);
-            let difference = smoothed - stress[i];
-            Ok(difference.dot(&material.strain(&difference)).max(0.0).sqrt())
-        })
-        .collect::<Result<_>>()?;
+    let indicator = |(_, stress, pairs): &(Vector2, Matrix2, Vec<(u32, f64)>)| {
+        let smoothed = pairs.iter().fold(Matrix2::zeros(), |s, (n, v)| s + nodal[*n as usize] * *v);
+        let difference = smoothed - stress;
+        difference.dot(&material.strain(&difference)).max(0.0).sqrt()
+    };
+    let error_indicator = samples.par_iter().with_min_len(64).map(indicator).collect();
     Ok(Fields {
         positions: (0..samples.len()).map(|i| triangulation.position(i as u32)).collect(),
         triangles: triangulation.triangles.clone(),
