@@ -11,6 +11,18 @@ pub const GROUP: usize = 8;
 pub struct Lanes<S: Simd>(S, S::f64s);
 
 impl<S: Simd> Lanes<S> {
+    /// Takes what a register holds.
+    #[inline(always)]
+    pub fn new(simd: S, numbers: S::f64s) -> Self {
+        Self(simd, numbers)
+    }
+
+    /// What the register holds.
+    #[inline(always)]
+    pub fn get(self) -> S::f64s {
+        self.1
+    }
+
     /// The same number in all lanes.
     #[inline(always)]
     pub fn splat(simd: S, number: f64) -> Self {
