@@ -25,8 +25,7 @@ const NARROW: f64 = 0.05;
 pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<Fields> {
     let material = &model.material;
     let triangulation = &discrete.triangulation;
-    // Neighbors and values too: they are needed again.
-    let samples: Vec<(Vector2, Matrix2, Vec<(u32, f64)>)> = (0..triangulation.copies.len())
+    let samples: Vec<Sample> = (0..triangulation.copies.len())
         .into_par_iter()
         .with_min_len(64)
         .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
@@ -34,10 +33,10 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
             discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
             let stress = material.stress(&shape.gradient(&solution.parameters));
             let pairs = shape.neighbors.iter().copied().zip(shape.values.iter().copied()).collect();
-            Ok((shape.value(&solution.parameters), stress, pairs))
+            Ok(Sample { displacement: shape.value(&solution.parameters), stress, pairs })
         })
         .collect::<Result<_>>()?;
-    let stress: Vec<Matrix2> = samples.iter().map(|s| s.1).collect();
+    let stress: Vec<Matrix2> = samples.iter().map(|s| s.stress).collect();
     // Additional functions add nothing to the mean.
     let mut nodal = vec![Matrix2::zeros(); discrete.n_functions()];
     for (copy, node) in discrete.node_of_copy.iter().enumerate() {
@@ -45,7 +44,7 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
             nodal[*node as usize] = stress[copy];
         }
     }
-    let indicator = |(_, stress, pairs): &(Vector2, Matrix2, Vec<(u32, f64)>)| {
+    let indicator = |Sample { stress, pairs, .. }: &Sample| {
         let smoothed = pairs.iter().fold(Matrix2::zeros(), |s, (n, v)| s + nodal[*n as usize] * *v);
         let difference = smoothed - stress;
         difference.dot(&material.strain(&difference)).max(0.0).sqrt()
@@ -54,7 +53,7 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
     Ok(Fields {
         positions: (0..samples.len()).map(|i| triangulation.position(i as u32)).collect(),
         triangles: triangulation.triangles.clone(),
-        displacement: samples.iter().map(|s| s.0).collect(),
+        displacement: samples.iter().map(|s| s.displacement).collect(),
         strain: stress.iter().map(|s| material.strain(s)).collect(),
         out_of_plane_strain: stress.iter().map(|s| material.out_of_plane_strain(s)).collect(),
         out_of_plane_stress: stress.iter().map(|s| material.out_of_plane_stress(s)).collect(),
@@ -63,6 +62,14 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
         error_indicator,
         crack_faces: sample_faces(model, discrete, solution)?,
     })
+}
+
+/// The solution at a point.
+struct Sample {
+    displacement: Vector2,
+    stress: Matrix2,
+    /// Neighbors and values of their functions, which are needed again.
+    pairs: Vec<(u32, f64)>,
 }
 
 /// Displacement of both faces at every point of the triangulation on each crack.
