@@ -1,6 +1,7 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
+use xtask::performance::Benchmarks;
 use xtask::{bench, calibrate, ci, dist, docs, performance, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
@@ -13,7 +14,7 @@ const TASKS: &str = "usage: cargo xtask <task>
   docs    writes the generated pages of the book, and builds the book where mdbook is installed
   python  builds the Python package and tests it, in an environment under `target`
   bench   runs the benchmarks; further words go to `cargo bench`
-  performance  measures speed and memory, and writes the page of the book about them";
+  performance  measures speed and memory, and writes the page of the book about them; with --stored from the last\n          run of the benchmarks";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -29,7 +30,8 @@ fn main() -> ExitCode {
         ("dist", []) => dist::run_all(),
         ("docs", []) => docs::run(),
         ("bench", rest) => bench::run(rest),
-        ("performance", []) => performance::run(),
+        ("performance", []) => performance::run(Benchmarks::Run),
+        ("performance", [flag]) if flag == "--stored" => performance::run(Benchmarks::Stored),
         ("python", []) => python::test(),
         _ => Err(TASKS.into()),
     };

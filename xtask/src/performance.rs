@@ -41,11 +41,24 @@ struct Sample {
 
 const STAGES: [&str; 6] = ["nodes", "discretization", "assembly", "solve", "fracture", "fields"];
 
+/// Where the numbers of the benchmarks come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Benchmarks {
+    /// They are run.
+    Run,
+    /// Their last run.
+    Stored,
+}
+
 /// Measures everything and writes the page.
-pub fn run() -> Outcome {
+///
+/// # Errors
+/// A program that does not run, or results that are not there.
+pub fn run(benchmarks: Benchmarks) -> Outcome {
     let program = build_riss()?;
-    run_command(&mut cargo(&["bench", "--package", "riss", "--bench", "shape_functions", "--", "cells|full_quartic"]))?;
-    run_command(&mut cargo(&["bench", "--package", "riss", "--bench", "assembly"]))?;
+    if benchmarks == Benchmarks::Run {
+        run_benchmarks()?;
+    }
     let expected = Expected::read(&root().join("cases").join(CASE))?;
     let of_k1 = expected.compare(&Value::Null).into_iter().find(|c| c.cells()[0].contains("K_I"));
     let Some(Target::Number(reference, _)) = of_k1.map(|c| c.reference.target) else {
@@ -57,6 +70,11 @@ pub fn run() -> Outcome {
     page += &curve(&program, reference)?;
     page += &instructions(&program)?;
     std::fs::write(root().join(PAGE), page).map_err(|e| format!("{PAGE}: {e}"))
+}
+
+fn run_benchmarks() -> Outcome {
+    run_command(&mut cargo(&["bench", "--package", "riss", "--bench", "shape_functions", "--", "cells|full_quartic"]))?;
+    run_command(&mut cargo(&["bench", "--package", "riss", "--bench", "assembly"]))
 }
 
 fn machine() -> String {
