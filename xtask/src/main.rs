@@ -1,7 +1,8 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
-use xtask::{bench, calibrate, ci, dist, docs, python, tidy, verify};
+use xtask::performance::Benchmarks;
+use xtask::{bench, calibrate, ci, dist, docs, performance, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
 
@@ -12,7 +13,8 @@ const TASKS: &str = "usage: cargo xtask <task>
   dist    builds one static program for Linux and a Python wheel into `target/dist`
   docs    writes the generated pages of the book, and builds the book where mdbook is installed
   python  builds the Python package and tests it, in an environment under `target`
-  bench   runs the benchmarks; further words go to `cargo bench`";
+  bench   runs the benchmarks; further words go to `cargo bench`
+  performance  measures speed and memory, and writes the page of the book about them; with --stored from the last\n          run of the benchmarks";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -28,6 +30,8 @@ fn main() -> ExitCode {
         ("dist", []) => dist::run_all(),
         ("docs", []) => docs::run(),
         ("bench", rest) => bench::run(rest),
+        ("performance", []) => performance::run(Benchmarks::Run),
+        ("performance", [flag]) if flag == "--stored" => performance::run(Benchmarks::Stored),
         ("python", []) => python::test(),
         _ => Err(TASKS.into()),
     };

@@ -1,9 +1,13 @@
-//! Shape functions with gradients at one point, as assembly asks for them; neighbors near a tip with each smoothing.
+//! Shape functions with gradients, as assembly asks for them, cell by cell in batches and point by point; neighbors near a
+//! tip with each smoothing.
+
+mod plate;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use riss::analysis::{Settings, Silent, discretize};
 use riss::approximation::enrichment::TipSpacing;
 use riss::approximation::moving_least_squares::Derivatives;
+use riss::approximation::point_batch::{PointBatch, Wanted};
 use riss::approximation::{
     ApproximationSettings, Basis, CrackSmoothing, Enrichment, EnrichmentKind, EnrichmentSettings, MovingLeastSquares,
     ShapeFunctions, SmoothingSettings, Surroundings, WeightFunction,
@@ -86,6 +90,49 @@ fn bench(c: &mut Criterion) {
     group.finish();
 }
 
+/// All points of the cells of a plate that see no crack, as assembly asks for them: in batches, and one by one.
+fn bench_cells(c: &mut Criterion) {
+    let mut group = c.benchmark_group("cells");
+    for (name, basis) in [("linear", Basis::Linear), ("quadratic", Basis::Quadratic)] {
+        let mut settings = Settings::default();
+        settings.approximation.basis = basis;
+        let (_, discrete) = plate::plate_with(3_000, settings);
+        let (cells, mls) = (&discrete.cells, &discrete.approximation);
+        let plain: Vec<usize> = (0..cells.len()).filter(|i| discrete.plain_cells[*i]).collect();
+        let points = |cell: usize| cells.points[as_usize(&cells.point_ranges[cell])].iter().map(|p| p.position);
+        let n_points: usize = plain.iter().map(|i| points(*i).len()).sum();
+        group.throughput(Throughput::Elements(n_points as u64));
+        let mut batch = PointBatch::default();
+        group.bench_function(format!("{name}_in_batches"), |b| {
+            b.iter(|| {
+                for &cell in &plain {
+                    mls.fill_nodes(discrete.cell_nodes.get(cell).iter().copied(), &mut batch);
+                    batch.set_points(points(cell).map(|p| (p, Vector2::zeros())));
+                    assert!(mls.evaluate_batch(Wanted::Gradients, &mut batch));
+                    black_box(&batch);
+                }
+            });
+        });
+        let (mut around, mut shape) = (Surroundings::default(), ShapeFunctions::default());
+        let mut n_neighbors = 0;
+        group.bench_function(format!("{name}_one_by_one"), |b| {
+            b.iter(|| {
+                n_neighbors = 0;
+                for &cell in &plain {
+                    mls.survey(&cells.bounds(cell), &mut around);
+                    for at in points(cell) {
+                        mls.evaluate_surveyed(at, at, Derivatives::First, &mut around, &mut shape).unwrap();
+                        n_neighbors += shape.neighbors.len();
+                        black_box(&shape);
+                    }
+                }
+            });
+        });
+        println!("{name}: {:.1} neighbors a point", n_neighbors as f64 / n_points as f64);
+    }
+    group.finish();
+}
+
 /// A square with a crack to its middle, on a grid that the crack runs between.
 fn near_tip(cracks: CrackSmoothing) -> Discretization {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vector2::from);
@@ -132,5 +179,5 @@ fn bench_near_tip(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, bench, bench_near_tip);
+criterion_group!(benches, bench, bench_cells, bench_near_tip);
 criterion_main!(benches);

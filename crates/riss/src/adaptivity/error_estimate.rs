@@ -6,7 +6,7 @@ use crate::integration::cells::as_usize;
 use crate::material::Elasticity;
 use crate::math::Vector2;
 use crate::model::Model;
-use crate::system::galerkin::{Scratch, cell_displacement_gradient, cell_gradients};
+use crate::system::galerkin::{Fields, Scratch, cell_displacement_gradient, cell_functions};
 use crate::system::{Discretization, Solution};
 use rayon::prelude::*;
 
@@ -130,7 +130,7 @@ fn cell_errors(
     cell: usize,
     (scratch, buffer): &mut Buffers,
 ) -> Result<(Vec<f64>, f64)> {
-    cell_gradients(discrete, cell, scratch, None)?;
+    cell_functions(discrete, cell, Fields::Gradients, scratch)?;
     let nodes = discrete.cell_nodes.get(cell);
     let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
     let mut energy = 0.0;

@@ -7,7 +7,7 @@ use crate::integration::cells::as_usize;
 use crate::math::Vector2;
 use crate::model::Model;
 use crate::system::constraints::Supports;
-use crate::system::galerkin::{Scratch, cell_displacement_gradient, cell_gradients};
+use crate::system::galerkin::{Fields, Scratch, cell_displacement_gradient, cell_functions};
 use crate::system::{ConstraintMethod, Discretization, Solution};
 use rayon::prelude::*;
 
@@ -31,7 +31,7 @@ pub fn strain_energy(model: &Model, discrete: &Discretization, solution: &Soluti
         .with_min_len(32)
         .map_init(Scratch::default, |scratch, cell| {
             let mut sums = [0.0; 3];
-            cell_gradients(discrete, cell, scratch, None)?;
+            cell_functions(discrete, cell, Fields::Gradients, scratch)?;
             let nodes = discrete.cell_nodes.get(cell);
             let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
             for (q, point) in points.iter().enumerate() {

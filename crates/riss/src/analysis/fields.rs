@@ -25,16 +25,18 @@ const NARROW: f64 = 0.05;
 pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<Fields> {
     let material = &model.material;
     let triangulation = &discrete.triangulation;
-    let samples: Vec<(Vector2, Matrix2)> = (0..triangulation.copies.len())
+    let samples: Vec<Sample> = (0..triangulation.copies.len())
         .into_par_iter()
         .with_min_len(64)
         .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
             let (at, sight) = (triangulation.position(i as u32), triangulation.copies[i].sight);
             discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
-            Ok((shape.value(&solution.parameters), material.stress(&shape.gradient(&solution.parameters))))
+            let stress = material.stress(&shape.gradient(&solution.parameters));
+            let pairs = shape.neighbors.iter().copied().zip(shape.values.iter().copied()).collect();
+            Ok(Sample { displacement: shape.value(&solution.parameters), stress, pairs })
         })
         .collect::<Result<_>>()?;
-    let stress: Vec<Matrix2> = samples.iter().map(|s| s.1).collect();
+    let stress: Vec<Matrix2> = samples.iter().map(|s| s.stress).collect();
     // Additional functions add nothing to the mean.
     let mut nodal = vec![Matrix2::zeros(); discrete.n_functions()];
     for (copy, node) in discrete.node_of_copy.iter().enumerate() {
@@ -42,22 +44,16 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
             nodal[*node as usize] = stress[copy];
         }
     }
-    let error_indicator = (0..stress.len())
-        .into_par_iter()
-        .with_min_len(64)
-        .map_init(<(Surroundings, ShapeFunctions<2>)>::default, |(around, shape), i| {
-            let (at, sight) = (triangulation.position(i as u32), triangulation.copies[i].sight);
-            discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
-            let pairs = shape.neighbors.iter().zip(&shape.values);
-            let smoothed = pairs.fold(Matrix2::zeros(), |s, (&n, &v)| s + nodal[n as usize] * v);
-            let difference = smoothed - stress[i];
-            Ok(difference.dot(&material.strain(&difference)).max(0.0).sqrt())
-        })
-        .collect::<Result<_>>()?;
+    let indicator = |Sample { stress, pairs, .. }: &Sample| {
+        let smoothed = pairs.iter().fold(Matrix2::zeros(), |s, (n, v)| s + nodal[*n as usize] * *v);
+        let difference = smoothed - stress;
+        difference.dot(&material.strain(&difference)).max(0.0).sqrt()
+    };
+    let error_indicator = samples.par_iter().with_min_len(64).map(indicator).collect();
     Ok(Fields {
         positions: (0..samples.len()).map(|i| triangulation.position(i as u32)).collect(),
         triangles: triangulation.triangles.clone(),
-        displacement: samples.iter().map(|s| s.0).collect(),
+        displacement: samples.iter().map(|s| s.displacement).collect(),
         strain: stress.iter().map(|s| material.strain(s)).collect(),
         out_of_plane_strain: stress.iter().map(|s| material.out_of_plane_strain(s)).collect(),
         out_of_plane_stress: stress.iter().map(|s| material.out_of_plane_stress(s)).collect(),
@@ -66,6 +62,14 @@ pub fn sample_fields(model: &Model, discrete: &Discretization, solution: &Soluti
         error_indicator,
         crack_faces: sample_faces(model, discrete, solution)?,
     })
+}
+
+/// The solution at a point.
+struct Sample {
+    displacement: Vector2,
+    stress: Matrix2,
+    /// Neighbors and values of their functions, which are needed again.
+    pairs: Vec<(u32, f64)>,
 }
 
 /// Displacement of both faces at every point of the triangulation on each crack.

@@ -54,6 +54,13 @@ pub(super) struct EnrichmentBuffer {
     values: Vec<[f64; MOST_FUNCTIONS]>,
 }
 
+impl EnrichmentBuffer {
+    /// Whether no region holds a point of the cell.
+    pub fn is_empty(&self) -> bool {
+        self.near.is_empty()
+    }
+}
+
 /// A point in a region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {

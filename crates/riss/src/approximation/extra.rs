@@ -39,6 +39,14 @@ impl Extra {
         }
     }
 
+    /// Whether no function acts where the nodes in a list do.
+    pub fn is_silent(&self, nodes: &[u32]) -> bool {
+        match self {
+            Self::OfNodes(extra) => nodes.iter().all(|i| extra.of_node(*i).is_empty()),
+            Self::OfTips(global) => global.is_silent(nodes),
+        }
+    }
+
     /// Appends the functions at a point to the shape functions of its neighbors.
     pub fn append(&self, view: [Vector2; 2], shape: &mut ShapeFunctions<2>) {
         match self {

@@ -75,6 +75,11 @@ impl GlobalFunctions {
         }
     }
 
+    /// Whether no function acts where the nodes in a list do.
+    pub fn is_silent(&self, nodes: &[u32]) -> bool {
+        self.values.iter().all(|of_tip| nodes.iter().all(|i| of_tip[*i as usize].is_none()))
+    }
+
     fn first(&self, region: usize) -> u32 {
         (self.n_nodes + MOST_FUNCTIONS * region) as u32
     }

@@ -3,10 +3,8 @@
 //! Modified Gram-Schmidt on the weighted columns loses digits with their condition, a factored moment matrix with its
 //! square; the enriched basis needs the difference. Dependent columns are found and left out.
 
+use crate::math::lanes::{Arch, GROUP, Lanes, Simd, WithSimd};
 use crate::math::{Matrix, Vector};
-
-/// Numbers that the compiler keeps together in vector registers.
-const LANES: usize = 8;
 
 /// Value and derivatives of a function of the basis at the center, lengths counted in support radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +51,7 @@ impl<const D: usize> LeastSquares<D> {
         self.roots.extend(roots);
         self.radius = radius;
         self.n_rows = self.roots.len();
-        self.stride = self.n_rows.next_multiple_of(LANES);
+        self.stride = self.n_rows.next_multiple_of(GROUP);
         self.roots.resize(self.stride, 0.0);
         self.values.clear();
         self.derivatives.clear();
@@ -97,34 +95,7 @@ impl<const D: usize> LeastSquares<D> {
     }
 
     fn run(&mut self, count: usize, tolerance: f64, passes: usize) -> usize {
-        let stride = self.stride;
-        let mut n_independent = 0;
-        for k in self.n_orthogonal..self.n_orthogonal + count {
-            let (before, rest) = self.values.split_at_mut(k * stride);
-            let column = &mut rest[..stride];
-            let length = dot(column, column).sqrt();
-            let start = self.upper.len();
-            self.upper.resize(start + k + 1, 0.0);
-            for _ in 0..passes {
-                for (j, earlier) in before.chunks_exact(stride).enumerate() {
-                    // Columns that are left out are zero.
-                    let r = dot(earlier, column);
-                    self.upper[start + j] += r;
-                    subtract(column, r, earlier);
-                }
-            }
-            let left = dot(column, column).sqrt();
-            // Written so that NaN fails too.
-            if left > tolerance * length {
-                self.upper[start + k] = left;
-                column.iter_mut().for_each(|v| *v /= left);
-                n_independent += 1;
-            } else {
-                column.fill(0.0);
-            }
-        }
-        self.n_orthogonal += count;
-        n_independent
+        Arch::new().dispatch(Orthogonalize { fit: self, count, tolerance, passes })
     }
 
     /// Derivatives of the fit by the values of the neighbors.
@@ -150,19 +121,7 @@ impl<const D: usize> LeastSquares<D> {
             }
             start += k + 1;
         }
-        let stride = self.stride;
-        self.lines.clear();
-        self.lines.resize(m * stride, 0.0);
-        for (d, line) in self.lines.chunks_exact_mut(stride).enumerate() {
-            // Second derivatives are symmetric: the lower ones are copied below.
-            if d > D && (d - 1 - D) / D > (d - 1 - D) % D {
-                continue;
-            }
-            for (k, column) in self.values.chunks_exact(stride).take(n).enumerate() {
-                subtract(line, -self.coefficients[k * m + d], column);
-            }
-            line.iter_mut().zip(&self.roots).for_each(|(l, root)| *l *= root);
-        }
+        Arch::new().dispatch(WriteLines(self));
     }
 
     /// Value and derivatives by the value of neighbor `i`, after [`Self::solve`].
@@ -178,22 +137,103 @@ impl<const D: usize> LeastSquares<D> {
     }
 }
 
-#[inline]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for l in 0..LANES {
-            sums[l] += a[l] * b[l];
-        }
-    }
-    sums.iter().sum()
+struct Orthogonalize<'a, const D: usize> {
+    fit: &'a mut LeastSquares<D>,
+    count: usize,
+    tolerance: f64,
+    passes: usize,
 }
 
-#[inline]
-fn subtract(y: &mut [f64], factor: f64, x: &[f64]) {
-    for (y, x) in y.chunks_exact_mut(LANES).zip(x.chunks_exact(LANES)) {
-        for l in 0..LANES {
-            y[l] -= factor * x[l];
+impl<const D: usize> WithSimd for Orthogonalize<'_, D> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> usize {
+        let Self { fit, count, tolerance, passes } = self;
+        let stride = fit.stride;
+        let mut n_independent = 0;
+        for k in fit.n_orthogonal..fit.n_orthogonal + count {
+            let (before, rest) = fit.values.split_at_mut(k * stride);
+            let column = &mut rest[..stride];
+            let length = dot(simd, column, column).sqrt();
+            let start = fit.upper.len();
+            fit.upper.resize(start + k + 1, 0.0);
+            for _ in 0..passes {
+                for (j, earlier) in before.chunks_exact(stride).enumerate() {
+                    // Columns that are left out are zero.
+                    let r = dot(simd, earlier, column);
+                    fit.upper[start + j] += r;
+                    add(simd, column, -r, earlier);
+                }
+            }
+            let left = dot(simd, column, column).sqrt();
+            // Written so that NaN fails too.
+            if left > tolerance * length {
+                fit.upper[start + k] = left;
+                for v in column.iter_mut() {
+                    *v /= left;
+                }
+                n_independent += 1;
+            } else {
+                column.fill(0.0);
+            }
         }
+        fit.n_orthogonal += count;
+        n_independent
+    }
+}
+
+/// Combines the orthonormal columns to the derivatives by the values of the neighbors.
+struct WriteLines<'a, const D: usize>(&'a mut LeastSquares<D>);
+
+impl<const D: usize> WithSimd for WriteLines<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self(fit) = self;
+        let (n, m, stride) = (fit.n_orthogonal, 1 + D + D * D, fit.stride);
+        fit.lines.clear();
+        fit.lines.resize(m * stride, 0.0);
+        for (d, line) in fit.lines.chunks_exact_mut(stride).enumerate() {
+            // Second derivatives are symmetric: the lower ones are copied.
+            if d > D && (d - 1 - D) / D > (d - 1 - D) % D {
+                continue;
+            }
+            for (k, column) in fit.values.chunks_exact(stride).take(n).enumerate() {
+                add(simd, line, fit.coefficients[k * m + d], column);
+            }
+            for (l, root) in line.iter_mut().zip(&fit.roots) {
+                *l *= root;
+            }
+        }
+    }
+}
+
+/// Scalar product of lists whose lengths are multiples of [`GROUP`].
+#[inline(always)]
+fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (S::as_simd_f64s(a).0, S::as_simd_f64s(b).0);
+    // Several sums, for an addition takes longer than the next one needs to start.
+    let mut sums = [Lanes::splat(simd, 0.0); 4];
+    let (a_parts, a_rest) = a.as_chunks::<4>();
+    let (b_parts, b_rest) = b.as_chunks::<4>();
+    for (a, b) in a_parts.iter().zip(b_parts) {
+        for l in 0..4 {
+            sums[l] = Lanes::new(simd, a[l]).mul_add(Lanes::new(simd, b[l]), sums[l]);
+        }
+    }
+    for (a, b) in a_rest.iter().zip(b_rest) {
+        sums[0] = Lanes::new(simd, *a).mul_add(Lanes::new(simd, *b), sums[0]);
+    }
+    ((sums[0] + sums[1]) + (sums[2] + sums[3])).sum()
+}
+
+/// Adds `factor x` to `y`.
+#[inline(always)]
+fn add<S: Simd>(simd: S, y: &mut [f64], factor: f64, x: &[f64]) {
+    let factor = Lanes::splat(simd, factor);
+    for (y, x) in S::as_mut_simd_f64s(y).0.iter_mut().zip(S::as_simd_f64s(x).0) {
+        *y = Lanes::new(simd, *x).mul_add(factor, Lanes::new(simd, *y)).get();
     }
 }

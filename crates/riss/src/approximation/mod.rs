@@ -1,7 +1,8 @@
 //! Shape functions. Has never heard of materials or loads.
 //!
 //! [`ShapeFunctions`] is the value that goes on: a buffer, refilled point by point. [`MovingLeastSquares`] fills it,
-//! from the [`weight_function`] of each visible neighbor and the fit in [`mls`], near tips with the functions of an
+//! from the [`weight_function`] of each visible neighbor and the fit in [`mls`] (far from
+//! cracks for many points at once, in a [`point_batch`]), near tips with the functions of an
 //! [`enrichment`]: in the basis, or as further unknowns (`partition_of_unity`, `global_functions`). For point collocation
 //! [`ConstrainedMls`] does, by a fit in the [`taylor_basis`].
 
@@ -16,10 +17,12 @@ pub mod finite_elements;
 pub mod front_functions;
 pub mod front_sheets;
 mod global_functions;
+mod lane_fit;
 mod least_squares;
 pub mod mls;
 pub mod moving_least_squares;
 mod partition_of_unity;
+pub mod point_batch;
 mod region_size;
 pub mod settings;
 mod sight;

@@ -9,9 +9,11 @@
 use super::settings::{FractureSettings, JIntegral, TipDomainShape};
 use super::tip_domain::{DomainPoint, PLATEAU, TipView};
 use crate::approximation::moving_least_squares::Derivatives;
+use crate::approximation::point_batch::{PointBatch, Wanted};
 use crate::approximation::{ShapeFunctions, Surroundings};
 use crate::error::Result;
 use crate::exact::crack_tip_field::{TipMode, tip_field};
+use crate::geometry::aabb::Aabb;
 use crate::material::Elasticity;
 use crate::math::{Matrix2, Vector2};
 use crate::system::{Discretization, Solution};
@@ -38,7 +40,19 @@ pub trait GradientField: Sync {
     type Buffer: Default;
     /// `[(i, j)] = ∂u_i/∂x_j` in global axes.
     fn gradient(&self, at: Vector2, sight: Vector2, buffer: &mut Self::Buffer) -> Result<Matrix2>;
+
+    /// The same at some points that lie together, each with from where it sees.
+    fn gradients(&self, views: &[[Vector2; 2]], buffer: &mut Self::Buffer, gradients: &mut Vec<Matrix2>) -> Result<()> {
+        gradients.clear();
+        for [at, sight] in views {
+            gradients.push(self.gradient(*at, *sight, buffer)?);
+        }
+        Ok(())
+    }
 }
+
+/// Points of a domain that are looked up together.
+const TOGETHER: usize = 4;
 
 /// The gradient of a solution.
 #[derive(Clone, Copy, Debug)]
@@ -50,13 +64,47 @@ pub struct SolutionField<'a> {
 }
 
 impl GradientField for SolutionField<'_> {
-    type Buffer = (Surroundings, ShapeFunctions<2>);
+    type Buffer = FieldBuffer;
 
     fn gradient(&self, at: Vector2, sight: Vector2, buffer: &mut Self::Buffer) -> Result<Matrix2> {
-        let (around, shape) = buffer;
+        let FieldBuffer { around, shape, .. } = buffer;
         self.discrete.approximation.evaluate(at, sight, Derivatives::First, around, shape)?;
         Ok(shape.gradient(&self.solution.parameters))
     }
+
+    fn gradients(&self, views: &[[Vector2; 2]], buffer: &mut Self::Buffer, gradients: &mut Vec<Matrix2>) -> Result<()> {
+        let (approximation, parameters) = (&self.discrete.approximation, &self.solution.parameters);
+        let FieldBuffer { around, shape, batch } = buffer;
+        gradients.clear();
+        approximation.survey(&Aabb::of_points(views.iter().flatten().copied()), around);
+        if approximation.is_plain(around) {
+            approximation.fill_nodes(around.candidates.iter().copied(), batch);
+            batch.set_points(views.iter().map(|[at, _]| (*at, Vector2::zeros())));
+            if approximation.evaluate_batch(Wanted::Gradients, batch) {
+                let stride = batch.stride();
+                gradients.extend((0..views.len()).map(|q| {
+                    around.candidates.iter().enumerate().fold(Matrix2::zeros(), |sum, (a, i)| {
+                        let slope = Vector2::from([0, 1].map(|d| batch.gradients[d][a * stride + q]));
+                        sum + parameters[*i as usize] * slope.transpose()
+                    })
+                }));
+                return Ok(());
+            }
+        }
+        for [at, sight] in views {
+            approximation.evaluate_surveyed(*at, *sight, Derivatives::First, around, shape)?;
+            gradients.push(shape.gradient(parameters));
+        }
+        Ok(())
+    }
+}
+
+/// Buffers of [`SolutionField`].
+#[derive(Clone, Debug, Default)]
+pub struct FieldBuffer {
+    around: Surroundings,
+    shape: ShapeFunctions<2>,
+    batch: PointBatch,
 }
 
 /// Force per volume at a point of the body, global axes [stress/length].
@@ -199,14 +247,22 @@ fn integrate<F: GradientField>(
     integrand: impl Fn(&DomainPoint, &State) -> Integrals + Sync,
 ) -> Result<Integrals> {
     let rotation = Matrix2::from_columns(&[view.frame.x1(), view.frame.x2()]);
-    let values: Vec<Integrals> = points
-        .par_iter()
-        .with_min_len(64)
-        .map_init(F::Buffer::default, |buffer, p| {
-            let gradient = rotation.transpose() * field.gradient(p.position, p.sight, buffer)? * rotation;
-            Ok(integrand(p, &State::new(material, gradient, p)))
+    let mut values = vec![[0.0; 4]; points.len()];
+    values
+        .par_chunks_mut(TOGETHER)
+        .zip(points.par_chunks(TOGETHER))
+        .with_min_len(64 / TOGETHER)
+        .map_init(<(F::Buffer, Vec<Matrix2>)>::default, |(buffer, gradients), (values, points)| {
+            let mut views = [[Vector2::zeros(); 2]; TOGETHER];
+            let views = &mut views[..points.len()];
+            views.iter_mut().zip(points).for_each(|(view, p)| *view = [p.position, p.sight]);
+            field.gradients(views, buffer, gradients)?;
+            for ((value, p), gradient) in values.iter_mut().zip(points).zip(gradients.iter()) {
+                *value = integrand(p, &State::new(material, rotation.transpose() * gradient * rotation, p));
+            }
+            Ok(())
         })
-        .collect::<Result<_>>()?;
+        .collect::<Result<()>>()?;
     // In order, so that any number of threads gives the same bits.
     let mut sum = [0.0; 4];
     for v in values {

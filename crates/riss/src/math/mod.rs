@@ -4,6 +4,7 @@
 
 pub mod cholesky;
 pub mod gauss_legendre;
+pub mod lanes;
 pub mod symmetric_eigen;
 
 /// A point or vector in `D` dimensions.

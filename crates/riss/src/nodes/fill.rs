@@ -30,9 +30,12 @@ pub fn fill(
         for k in 0..CANDIDATES {
             let candidate = p + direction(start + k as f64 * std::f64::consts::TAU / CANDIDATES as f64) * h;
             let own = spacing.at(candidate);
-            let mut near_given = current < given.len();
-            let clear = grid.is_clear(candidate, own, &points, |i| near_given |= (i as usize) < given.len());
-            if clear && (!near_given || inside(candidate)) {
+            if grid.any_within(CLOSENESS * own, candidate, own, &points, |_| true) {
+                continue;
+            }
+            let near_given = current < given.len()
+                || grid.any_within(2.0 * own, candidate, own, &points, |i| (i as usize) < given.len());
+            if !near_given || inside(candidate) {
                 grid.insert(points.len() as u32, candidate, own);
                 points.push((candidate, own));
             }
@@ -45,7 +48,7 @@ pub fn fill(
 /// Points in square bins whose size follows their spacing by powers of two.
 #[derive(Default)]
 struct LevelGrid {
-    bins: FxHashMap<(i32, i64, i64), Vec<u32>>,
+    levels: FxHashMap<i32, FxHashMap<[i64; 2], Vec<u32>>>,
 }
 
 impl LevelGrid {
@@ -53,35 +56,33 @@ impl LevelGrid {
         h.log2().floor() as i32
     }
 
-    fn bin(level: i32, p: Vector2) -> (i32, i64, i64) {
+    fn bin(level: i32, p: Vector2) -> [i64; 2] {
         let size = 2f64.powi(level);
-        (level, (p.x / size).floor() as i64, (p.y / size).floor() as i64)
+        [(p.x / size).floor() as i64, (p.y / size).floor() as i64]
     }
 
     fn insert(&mut self, index: u32, p: Vector2, h: f64) {
-        self.bins.entry(Self::bin(Self::level(h), p)).or_default().push(index);
+        let level = Self::level(h);
+        self.levels.entry(level).or_default().entry(Self::bin(level, p)).or_default().push(index);
     }
 
-    /// Whether no point is nearer than `CLOSENESS` times its distance rule; `seen` hears of all within two spacings.
-    fn is_clear(&self, p: Vector2, h: f64, points: &[(Vector2, f64)], mut seen: impl FnMut(u32)) -> bool {
-        let mut clear = true;
-        let reach = 2.0 * h;
-        for level in Self::level(h) - 1..=Self::level(h) + 1 {
-            let (_, i0, j0) = Self::bin(level, p - Vector2::repeat(reach));
-            let (_, i1, j1) = Self::bin(level, p + Vector2::repeat(reach));
-            for i in i0..=i1 {
-                for j in j0..=j1 {
-                    for &index in self.bins.get(&(level, i, j)).into_iter().flatten() {
-                        let d = (points[index as usize].0 - p).norm();
-                        if d < reach {
-                            seen(index);
-                        }
-                        clear &= d >= CLOSENESS * h;
-                    }
-                }
-            }
-        }
-        clear
+    /// Whether a point of about the spacing `h` that `counts` is nearer than `reach`.
+    fn any_within(
+        &self,
+        reach: f64,
+        p: Vector2,
+        h: f64,
+        points: &[(Vector2, f64)],
+        counts: impl Fn(u32) -> bool,
+    ) -> bool {
+        let is_near = |i: &u32| (points[*i as usize].0 - p).norm() < reach && counts(*i);
+        (Self::level(h) - 1..=Self::level(h) + 1).any(|level| {
+            let Some(bins) = self.levels.get(&level) else { return false };
+            // No point is lost by round-off.
+            let margin = Vector2::repeat(reach * (1.0 + 1e-9));
+            let ([i0, j0], [i1, j1]) = (Self::bin(level, p - margin), Self::bin(level, p + margin));
+            (i0..=i1).any(|i| (j0..=j1).any(|j| bins.get(&[i, j]).is_some_and(|bin| bin.iter().any(is_near))))
+        })
     }
 }
 

@@ -95,22 +95,24 @@ impl RunWriter {
         self.steps.push(StepResults::new(result, stage_time_s));
         let step = result.step.step;
         let mut files: Vec<(String, Vec<u8>)> = vec![("history.csv".into(), history_csv(&self.steps)?)];
-        for file in step_files(result, &self.options)? {
+        // What takes time is made side by side.
+        let has_picture = self.options.fields && !result.fields.positions.is_empty();
+        let has_report = self.options.fields && result.n_nodes > 0;
+        let picture = || has_picture.then(|| field_picture::field_picture(result, FieldQuantity::VonMises)).transpose();
+        let of_report = || has_report.then(|| report::step_files(step, &result.fields));
+        let ((of_step, picture), of_report) =
+            rayon::join(|| rayon::join(|| step_files(result, &self.options), picture), of_report);
+        for file in of_step? {
             self.step_files.push((file.kind, step));
             files.push((file.name, file.content));
         }
         files.extend(self.collections());
-        if self.options.fields && !result.fields.positions.is_empty() {
-            let picture = field_picture::field_picture(result, FieldQuantity::VonMises)?;
-            files.push((PICTURE_FILE.into(), picture.into_bytes()));
-        }
+        files.extend(picture?.map(|picture| (PICTURE_FILE.into(), picture.into_bytes())));
         if let Some(state) = state {
             fs::create_dir_all(self.dir.join(RESTART_FOLDER))?;
             files.push((restart_name(step), serde_json::to_vec(state)?));
         }
-        if self.options.fields && result.n_nodes > 0 {
-            files.extend(report::step_files(step, &result.fields));
-        }
+        files.extend(of_report.into_iter().flatten());
         let mut results = Results::of_steps(info, result, self.steps.clone());
         results.files = files.iter().map(|f| f.0.clone()).collect();
         // Those of earlier steps are part of the run, too.

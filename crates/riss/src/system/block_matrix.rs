@@ -2,6 +2,7 @@
 
 use super::discretization::NodeLists;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Blocks of the lower triangle, row by row: row `i` holds the columns `j <= i`, ascending.
 ///
@@ -107,35 +108,45 @@ impl BlockMatrix {
 
     /// Adds local matrices in their order; rows go to threads by range, so that any number of threads gives the
     /// same sums.
-    pub fn scatter(&mut self, locals: &[LocalMatrix]) {
+    ///
+    /// - `buffers`: one for each range of rows; any contents
+    pub fn scatter(&mut self, locals: &[LocalMatrix], buffers: &mut [RowBuffer]) {
         let n = self.n_nodes();
-        let n_ranges = (4 * rayon::current_num_threads()).min(n.max(1));
+        let n_ranges = buffers.len();
         let mut slices = vec![];
         let mut rest = &mut self.blocks[..];
         let mut begin = 0;
-        for r in 0..n_ranges {
+        for (r, buffer) in buffers.iter_mut().enumerate() {
             let end = n * (r + 1) / n_ranges;
             let (head, tail) = rest.split_at_mut(self.row_starts[end] - self.row_starts[begin]);
-            slices.push((begin, end, head));
+            slices.push((begin..end, head, buffer));
             rest = tail;
             begin = end;
         }
         let (starts, columns) = (&self.row_starts, &self.columns);
-        slices.into_par_iter().for_each(|(begin, end, blocks)| {
-            for local in locals {
-                let first = local.nodes.partition_point(|&i| (i as usize) < begin);
-                let last = local.nodes.partition_point(|&i| (i as usize) < end);
-                for a in first..last {
-                    let i = local.nodes[a] as usize;
-                    let (row, base) = (&columns[starts[i]..starts[i + 1]], starts[i] - starts[begin]);
-                    let mut at = 0;
-                    for b in 0..=a {
-                        let j = local.nodes[b];
-                        while row[at] != j {
-                            at += 1;
+        slices.into_par_iter().for_each(|(rows, blocks, buffer)| {
+            buffer.find_holders(&rows, locals);
+            buffer.places.resize(n, 0);
+            let RowBuffer { ends, holders, places } = buffer;
+            let base = starts[rows.start];
+            for (k, i) in rows.enumerate() {
+                let held = (if k == 0 { 0 } else { ends[k - 1] }) as usize..ends[k] as usize;
+                if held.is_empty() {
+                    continue;
+                }
+                let row = starts[i]..starts[i + 1];
+                for (place, &j) in columns[row.clone()].iter().enumerate() {
+                    places[j as usize] = place as u32;
+                }
+                let sums = &mut blocks[row.start - base..row.end - base];
+                for &(local, a) in &holders[held] {
+                    let local = &locals[local as usize];
+                    for (&j, block) in local.nodes.iter().zip(local.row(a as usize)) {
+                        // Not all nodes of a patch meet; those that do not have no place.
+                        if *block == [0.0; 4] {
+                            continue;
                         }
-                        let block = &mut blocks[base + at];
-                        for (sum, v) in block.iter_mut().zip(local.block(a, b)) {
+                        for (sum, v) in sums[places[j as usize] as usize].iter_mut().zip(block) {
                             *sum += v;
                         }
                     }
@@ -179,7 +190,7 @@ impl BlockMatrix {
     }
 }
 
-/// Matrix and load of one cell or boundary element. A buffer.
+/// Matrix and load of some cells or a boundary element. A buffer.
 #[derive(Clone, Debug, Default)]
 pub struct LocalMatrix {
     /// Nodes, ascending.
@@ -202,14 +213,52 @@ impl LocalMatrix {
         self.load.resize(2 * n, 0.0);
     }
 
+    /// The blocks of local node `a` with those up to itself.
     #[inline]
-    fn block(&self, a: usize, b: usize) -> &[f64; 4] {
-        &self.blocks[a * (a + 1) / 2 + b]
+    fn row(&self, a: usize) -> &[[f64; 4]] {
+        &self.blocks[a * (a + 1) / 2..][..=a]
     }
 
     /// The block of local nodes `a >= b`.
     #[inline]
     pub fn block_mut(&mut self, a: usize, b: usize) -> &mut [f64; 4] {
         &mut self.blocks[a * (a + 1) / 2 + b]
+    }
+}
+
+/// What a range of rows needs to know of local matrices. A buffer.
+#[derive(Clone, Debug, Default)]
+pub struct RowBuffer {
+    /// For each row the end of its holders.
+    ends: Vec<u32>,
+    /// Local matrices that hold a row, and its index there; row by row, in the order of the matrices.
+    holders: Vec<(u32, u32)>,
+    /// Place of each column in the row at hand.
+    places: Vec<u32>,
+}
+
+impl RowBuffer {
+    fn find_holders(&mut self, rows: &Range<usize>, locals: &[LocalMatrix]) {
+        let of = |local: &LocalMatrix| {
+            let first = local.nodes.partition_point(|&i| (i as usize) < rows.start);
+            first..local.nodes.partition_point(|&i| (i as usize) < rows.end)
+        };
+        self.ends.clear();
+        self.ends.resize(rows.len() + 1, 0);
+        for local in locals {
+            local.nodes[of(local)].iter().for_each(|&i| self.ends[i as usize - rows.start + 1] += 1);
+        }
+        for k in 0..rows.len() {
+            self.ends[k + 1] += self.ends[k];
+        }
+        self.holders.resize(self.ends[rows.len()] as usize, (0, 0));
+        // The start of each row moves to its end.
+        for (l, local) in locals.iter().enumerate() {
+            for a in of(local) {
+                let next = &mut self.ends[local.nodes[a] as usize - rows.start];
+                self.holders[*next as usize] = (l as u32, a as u32);
+                *next += 1;
+            }
+        }
     }
 }

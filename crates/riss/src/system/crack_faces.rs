@@ -6,7 +6,7 @@
 
 use super::block_matrix::LocalMatrix;
 use super::discretization::Discretization;
-use super::galerkin::{LinearSystem, Scratch};
+use super::galerkin::{ELEMENTS, LinearSystem, Scratch};
 use crate::approximation::moving_least_squares::Derivatives;
 use crate::error::Result;
 use crate::geometry::predicates::distance_to_segment;
@@ -109,7 +109,7 @@ pub fn with_contact(system: &LinearSystem, rows: &[OpeningRow], closed: &[bool])
     let active: Vec<&OpeningRow> = rows.iter().zip(closed).filter(|r| *r.1).map(|r| r.0).collect();
     let matrix = system.matrix.widened(active.iter().map(|r| r.nodes.as_slice()));
     let mut result = LinearSystem { matrix, load: system.load.clone() };
-    result.add(active.len(), |i, _, local| {
+    result.add(active.len(), ELEMENTS, |i, _, local| {
         add_products(local, active[i]);
         Ok(())
     })?;

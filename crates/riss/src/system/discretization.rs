@@ -89,6 +89,8 @@ pub struct Discretization {
     pub particles: Vec<CrackParticles>,
     /// Neighbors of each cell, additional functions included.
     pub cell_nodes: NodeLists,
+    /// Cells around which nothing hides or enriches nodes.
+    pub plain_cells: Vec<bool>,
     /// Neighbors of each boundary element.
     pub boundary_nodes: NodeLists,
     /// What could not be done as the settings say.
@@ -161,7 +163,8 @@ impl Discretization {
             MovingLeastSquares::new(nodes, barriers.clone(), *approximation).enriched(enrichment).coupled(elements);
         let crack_faces = crack_face_elements(model, &chains, integration);
         let parts = Parts { cells: &cells, boundary: &boundary, crack_faces: &crack_faces };
-        let (approximation, lists) = safeguard(start, obstacles, &barriers, &parts)?;
+        let (approximation, lists, mut plain_cells) = safeguard(start, obstacles, &barriers, &parts)?;
+        plain_cells.truncate(cells.len());
         let (of_cells, rest) = lists.split_at(cells.len());
         let [cell_nodes, boundary_nodes] = [of_cells, &rest[..boundary.len()]].map(NodeLists::from_lists);
         Ok(Self {
@@ -173,6 +176,7 @@ impl Discretization {
             crack_faces,
             particles,
             cell_nodes,
+            plain_cells,
             boundary_nodes,
             notes,
         })

@@ -3,6 +3,7 @@
 pub mod aggregates;
 pub mod block_matrix;
 pub mod block_rows;
+mod cell_blocks;
 pub mod coarse_level;
 pub mod collocation;
 pub mod collocation_settings;
@@ -19,6 +20,7 @@ pub mod linear_solver;
 mod node_conditions;
 mod node_solver;
 pub mod ordering;
+mod patches;
 pub mod rigid_motion;
 mod safeguard;
 pub mod settings;

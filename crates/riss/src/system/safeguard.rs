@@ -2,6 +2,7 @@
 
 use crate::approximation::discontinuity::Barriers;
 use crate::approximation::moving_least_squares::{Derivatives, POOR_PIVOT};
+use crate::approximation::point_batch::{PointBatch, Wanted};
 use crate::approximation::{MovingLeastSquares, ShapeFunctions, Surroundings};
 use crate::error::{Error, Result};
 use crate::geometry::aabb::Aabb;
@@ -19,12 +20,18 @@ const SUPPORT_ROUNDS: usize = 12;
 const SUPPORT_GROWTH: f64 = 1.15;
 
 /// Position and sight of all points of a cell, those of its outline included.
-fn cell_views(cells: &IntegrationCells, cell: usize) -> impl Iterator<Item = (Vector2, Vector2)> + '_ {
+fn cell_views(cells: &IntegrationCells, cell: usize) -> impl Iterator<Item = (Vector2, Vector2)> + Clone + '_ {
     let points = cells.points[as_usize(&cells.point_ranges[cell])].iter().map(|p| (p.position, p.position));
     points.chain(cells.edge_points[as_usize(&cells.edge_ranges[cell])].iter().map(|p| (p.position, p.sight)))
 }
 
-type Buffer = (Surroundings, ShapeFunctions<2>);
+#[derive(Default)]
+struct Buffer {
+    around: Surroundings,
+    shape: ShapeFunctions<2>,
+    batch: PointBatch,
+    nodes: Vec<u32>,
+}
 
 /// All that holds integration points: cells, then boundary elements, then elements of cracks.
 pub(super) struct Parts<'a> {
@@ -40,6 +47,8 @@ struct Inspection {
     neighbors: Vec<u32>,
     /// Points whose moment matrix is poor.
     poor: Vec<Poor>,
+    /// Whether the points can stand in a batch.
+    is_plain: bool,
 }
 
 struct Poor {
@@ -52,11 +61,18 @@ struct Poor {
     is_enriched: bool,
 }
 
+/// - `views`: position and sight of the points
 fn inspect(
     approximation: &MovingLeastSquares,
-    views: impl Iterator<Item = (Vector2, Vector2)>,
-    (around, shape): &mut Buffer,
+    bounds: &Aabb<2>,
+    views: impl Iterator<Item = (Vector2, Vector2)> + Clone,
+    buffer: &mut Buffer,
 ) -> Inspection {
+    approximation.survey(bounds, &mut buffer.around);
+    if approximation.is_plain(&buffer.around) {
+        return inspect_plain(approximation, bounds, views, buffer);
+    }
+    let Buffer { around, shape, .. } = buffer;
     let mut result = Inspection::default();
     let mut seen = vec![false; around.candidates.len()];
     let mut corners: Vec<u32> = vec![];
@@ -94,6 +110,32 @@ fn inspect(
     result
 }
 
+/// The same where nothing hides or enriches: all points at once.
+fn inspect_plain(
+    approximation: &MovingLeastSquares,
+    bounds: &Aabb<2>,
+    views: impl Iterator<Item = (Vector2, Vector2)> + Clone,
+    buffer: &mut Buffer,
+) -> Inspection {
+    let Buffer { around, batch, nodes, .. } = buffer;
+    nodes.clear();
+    nodes.extend(around.candidates.iter().filter(|i| approximation.may_reach(**i, bounds)));
+    approximation.fill_nodes(nodes.iter().copied(), batch);
+    batch.set_points(views.clone().map(|(at, _)| (at, Vector2::zeros())));
+    approximation.evaluate_batch(Wanted::Quality, batch);
+    let reached = nodes.iter().zip(&batch.is_reached).filter(|(_, is_reached)| **is_reached);
+    let mut result = Inspection { neighbors: reached.map(|(i, _)| *i).collect(), poor: vec![], is_plain: true };
+    for (q, (at, sight)) in views.enumerate() {
+        let n_neighbors = batch.quality[1][q] as usize;
+        let needed = approximation.n_needed(at, around);
+        let quality = if n_neighbors < needed { 0.0 } else { batch.quality[0][q] };
+        if quality < POOR_PIVOT {
+            result.poor.push(Poor { at, sight, quality, n_neighbors, needed, is_enriched: false });
+        }
+    }
+    result
+}
+
 impl Parts<'_> {
     fn len(&self) -> usize {
         self.cells.len() + self.boundary.len() + self.crack_faces.len()
@@ -102,17 +144,14 @@ impl Parts<'_> {
     fn inspect(&self, approximation: &MovingLeastSquares, i: usize, buffer: &mut Buffer) -> Inspection {
         let (n_cells, n_boundary) = (self.cells.len(), self.boundary.len());
         if i < n_cells {
-            approximation.survey(&self.cells.bounds(i), &mut buffer.0);
-            inspect(approximation, cell_views(self.cells, i), buffer)
+            inspect(approximation, &self.cells.bounds(i), cell_views(self.cells, i), buffer)
         } else if i < n_cells + n_boundary {
             let element = &self.boundary[i - n_cells];
-            approximation.survey(&element.bounds(), &mut buffer.0);
-            inspect(approximation, element.points.iter().map(|p| (p.position, p.sight)), buffer)
+            inspect(approximation, &element.bounds(), element.points.iter().map(|p| (p.position, p.sight)), buffer)
         } else {
             let element = &self.crack_faces[i - n_cells - n_boundary];
-            approximation.survey(&element.bounds(), &mut buffer.0);
             let views = element.points.iter().flat_map(|p| p.sights.map(|sight| (p.position, sight)));
-            inspect(approximation, views, buffer)
+            inspect(approximation, &element.bounds(), views, buffer)
         }
     }
 
@@ -123,13 +162,13 @@ impl Parts<'_> {
 }
 
 /// Enlarges supports until every integration point has a well-conditioned moment matrix; returns the neighbors of all
-/// parts.
+/// parts, and which of them are plain.
 pub(super) fn safeguard(
     mut approximation: MovingLeastSquares,
     obstacles: Obstacles,
     barriers: &Barriers,
     parts: &Parts,
-) -> Result<(MovingLeastSquares, Vec<Vec<u32>>)> {
+) -> Result<(MovingLeastSquares, Vec<Vec<u32>>, Vec<bool>)> {
     let all: Vec<usize> = (0..parts.len()).collect();
     let mut suspects = all.clone();
     let tree = BoxTree::of_points(&approximation.nodes().positions);
@@ -156,7 +195,8 @@ pub(super) fn safeguard(
         }
         // Larger supports reach other cells too.
         let lists = if round == 0 { found } else { parts.inspect_all(&approximation, &all) };
-        return Ok((approximation, lists.into_iter().map(|i| i.neighbors).collect()));
+        let is_plain = lists.iter().map(|i| i.is_plain).collect();
+        return Ok((approximation, lists.into_iter().map(|i| i.neighbors).collect(), is_plain));
     }
     unreachable!("the last round returns")
 }

@@ -5,5 +5,6 @@ mod bodies;
 mod enrichment;
 mod finite_elements;
 mod invariance;
+mod point_batch;
 mod shape_functions;
 mod smoothing;

@@ -4,6 +4,7 @@ use super::{Derivatives, MovingLeastSquares};
 use crate::approximation::ShapeFunctions;
 use crate::approximation::enrichment::{EnrichmentBuffer, TipPoint};
 use crate::approximation::mls::Neighborhood;
+use crate::approximation::point_batch::{PointBatch, Wanted};
 use crate::approximation::settings::{SupportShape, WeightFunction};
 use crate::approximation::sight::{Candidate, SightBuffer, View};
 use crate::geometry::aabb::Aabb;
@@ -58,6 +59,35 @@ impl MovingLeastSquares {
             ys.push(p.y);
             around.inverse.push(1.0 / (r * r));
         }
+    }
+
+    /// Whether what was surveyed hides no node and enriches none, so that its points can stand in a [`PointBatch`].
+    pub fn is_plain(&self, around: &Surroundings) -> bool {
+        self.settings.support == SupportShape::Circular
+            && around.sight.is_open()
+            && (self.elements.is_none() || around.elements.is_empty())
+            && (self.enrichment.is_none() || around.enrichment.is_empty())
+            && self.extra.as_ref().is_none_or(|extra| extra.is_silent(&around.candidates))
+    }
+
+    /// Makes the given nodes those of a batch.
+    pub fn fill_nodes(&self, nodes: impl Iterator<Item = u32>, batch: &mut PointBatch) {
+        batch.set_nodes(nodes.map(|i| {
+            let (p, r) = (self.nodes.positions[i as usize], self.nodes.support_radii[i as usize].x);
+            [p.x, p.y, 1.0 / (r * r)]
+        }));
+    }
+
+    /// Whether the support of a node meets a box, but for round-off.
+    pub fn may_reach(&self, node: u32, bounds: &Aabb<2>) -> bool {
+        let (p, r) = (self.nodes.positions[node as usize], self.nodes.support_radii[node as usize].max());
+        let nearest = Vector2::from_fn(|d, _| p[d].clamp(bounds.lower[d], bounds.upper[d]));
+        (p - nearest).norm_squared() <= r * r * (1.0 + 1e-12)
+    }
+
+    /// Computes what is wanted of the points of a batch; false if the fit at one of them is singular.
+    pub fn evaluate_batch(&self, wanted: Wanted, batch: &mut PointBatch) -> bool {
+        batch.evaluate(self.settings.basis, self.settings.weight_function, wanted)
     }
 
     /// Gathers the neighbors of a point that was surveyed.
