@@ -26,7 +26,7 @@ pub use settings::LoadingSettings;
 use work::Work;
 
 /// Pairs with less than this share of cohesive area are free.
-const LEAST_SHARE: f64 = 0.02;
+const LEAST_SHARE: f64 = 0.1;
 /// Faces that pass on more shear than this, over the strength, must be let slide.
 const STICKS: f64 = 0.05;
 /// Steps with files of their fields, besides the first, that of the peak and the last.

@@ -15,6 +15,8 @@ const TOGETHER: f64 = 1e-6;
 const EXCESS: f64 = 1e-7;
 /// Largest residual of tractions over the strength.
 const RESIDUAL: f64 = 1e-9;
+/// How far from its length a step along the tangent may end, over that length.
+const OFF_LENGTH: f64 = 1e-6;
 /// Longest step: largest change of an opening over `G_f/f_t`, and of the load factor over itself.
 const LONGEST: f64 = 0.05;
 /// A step shorter than this is given up.
@@ -200,6 +202,10 @@ impl<'a> Path<'a> {
     /// Newton's method; the trial is a solution if the answer is yes.
     fn converge(&self, trial: &mut CohesiveState, target: &Target<'_>) -> bool {
         let unknown = self.open_columns();
+        let allowed = match target {
+            Target::Reaches(_) => RESIDUAL,
+            Target::Across { .. } => OFF_LENGTH,
+        };
         for _ in 0..ITERATIONS {
             let (mut right, tractions) = self.residuals(&unknown, trial);
             let (last, excess) = self.target_row(&unknown, trial, &tractions, target);
@@ -207,7 +213,7 @@ impl<'a> Path<'a> {
             if !largest.is_finite() {
                 return false;
             }
-            if largest <= RESIDUAL && excess.abs() <= RESIDUAL {
+            if largest <= RESIDUAL && excess.abs() <= allowed {
                 return true;
             }
             right.push(excess);

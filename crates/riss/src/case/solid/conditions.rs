@@ -1,8 +1,8 @@
 //! Loads, supports and known solutions of a solid.
 
 use super::body::BOUNDARY;
-use super::cracks::unit;
-use super::schema::{SolidExact, SolidFile, SolidLoad, SolidStress, SolidSupport};
+use super::exact::exact;
+use super::schema::{SolidFile, SolidLoad, SolidStress, SolidSupport};
 use crate::case::Problem;
 use crate::case::build::report::Report;
 use crate::case::expression::Expression;
@@ -281,13 +281,4 @@ fn sum(mut tractions: Vec<VectorField<3>>) -> VectorField<3> {
         1 => tractions.remove(0),
         _ => VectorField::Function(Arc::new(move |at| tractions.iter().map(|t| t.value(at)).sum())),
     }
-}
-
-fn exact(exact: &SolidExact, report: &mut Report) -> Option<CrackFrontField> {
-    let SolidExact::CrackFront(front) = exact;
-    let ahead = unit(front.ahead, "exact.crack-front.ahead", report)?;
-    let normal = Vector3::from(front.normal);
-    let normal = unit((normal - ahead * normal.dot(&ahead)).into(), "exact.crack-front.normal", report)?;
-    let factors = [front.K_I, front.K_II, front.K_III];
-    Some(CrackFrontField { origin: Vector3::from(front.origin), ahead, normal, factors, t_stress: front.T })
 }

@@ -1,12 +1,13 @@
 //! Cases of solids: `method = "collocation"`.
 //!
-//! Reading order: [`schema`] (what may be written), [`body`] and [`stl`] (geometry), [`cracks`], [`conditions`], [`nodes`],
+//! Reading order: [`schema`] (what may be written), [`body`] and [`stl`] (geometry), [`cracks`], [`exact`], [`conditions`], [`nodes`],
 //! [`growth`], [`cohesive`].
 
 mod body;
 mod cohesive;
 mod conditions;
 mod cracks;
+mod exact;
 mod growth;
 mod nodes;
 pub(super) mod schema;

@@ -1,6 +1,7 @@
 //! What the case file of a solid may say. Shape only: ranges and sense are checked in the files beside.
 
 use super::cohesive::{Notch, SolidCohesive};
+use super::exact::SolidExact;
 use super::growth::SolidGrowth;
 use crate::analysis::LoadingSettings;
 use crate::case::files::FileAccess;
@@ -324,39 +325,6 @@ pub(in crate::case) struct SolidBodyForce {
     /// Along z.
     #[serde(default)]
     pub z: Option<Scalar>,
-}
-
-/// A known solution, one of these.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub(in crate::case) enum SolidExact {
-    /// Field of a straight crack front with its half plane of crack.
-    CrackFront(ExactFront),
-}
-
-/// Field of a straight crack front.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[allow(non_snake_case)]
-pub(in crate::case) struct ExactFront {
-    /// A point of the front [length].
-    pub origin: Triple,
-    /// Direction ahead of the crack; of any length.
-    pub ahead: Triple,
-    /// Normal of the crack; its part along `ahead` does not count.
-    pub normal: Triple,
-    /// Mode I stress intensity factor [stress·√length].
-    #[serde(default)]
-    pub K_I: f64,
-    /// Mode II stress intensity factor [stress·√length].
-    #[serde(default)]
-    pub K_II: f64,
-    /// Mode III stress intensity factor [stress·√length].
-    #[serde(default)]
-    pub K_III: f64,
-    /// Stress along `ahead` that does not fade at the front [stress].
-    #[serde(default)]
-    pub T: f64,
 }
 
 /// Placement of nodes. Whatever is not given follows from the geometry.
