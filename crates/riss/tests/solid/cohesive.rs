@@ -71,3 +71,29 @@ fn a_bar_follows_the_law() {
         }
     }
 }
+
+/// A plane that is not square to the bar slides as it opens: with `n·e_z = cos θ` the effective traction is `q σ`,
+/// `q² = cos⁴θ + sin²θ cos²θ/β²`, and the elongation `L σ/E + δ q/cos θ`.
+#[test]
+fn an_inclined_plane_opens_and_slides() {
+    let (young, length, area, strength, energy, beta) = (30000.0, 40.0, 100.0, 3.0, 0.1, 0.8);
+    let (record, _) = load(&format!(
+        "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = {young}, poisson = 0.2, \
+         cohesive = {{ strength = {strength}, fracture_energy = {energy}, shear_ratio = {beta} }} }}\n\
+         geometry.box = {{ lower = [0, 0, 0], upper = [10, 10, {length}] }}\nnodes.spacing = 3\n\
+         support = [{{ on = 'z-min', z = 0 }}, {{ on = 'z-max', z = 0.01 }}]\n\
+         crack = [{{ cohesive = true, polygon = [[0, 0, 18], [10, 0, 20.5], [10, 10, 20.5], [0, 10, 18]] }}]"
+    ));
+    let law = CohesiveLaw { strength, fracture_energy: energy, softening: Softening::Exponential, shear_ratio: beta };
+    let cos = 1.0 / (1.0 + 0.25f64 * 0.25).sqrt();
+    let q = (cos.powi(4) + (1.0 - cos * cos) * cos * cos / (beta * beta)).sqrt();
+    let peak = record.curve[record.peak].load / area;
+    assert!((peak * q / strength - 1.0).abs() < 1e-4, "{peak} {}", strength / q);
+    assert_eq!(record.end.kind, GrowthEndKind::LimitReached, "{:?}", record.end);
+    for point in record.curve.iter().filter(|p| p.crack_area > 0.0) {
+        let stress = point.load / area;
+        let effective = (point.displacement - length * stress / young) * cos / q;
+        let expected = law.softening(effective.max(0.0))[0] / q;
+        assert!((stress - expected).abs() < 1e-3 * strength, "{stress} {expected}");
+    }
+}

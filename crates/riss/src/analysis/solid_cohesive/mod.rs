@@ -1,12 +1,14 @@
 //! Cohesive cracks on given surfaces: tied until they reach their strength, then opening along the path of equilibrium.
 //!
 //! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with what loads do in
-//! [`work`] and the faces' areas in [`areas`]; [`path`] then follows the softening of all pairs at once.
+//! [`work`] and the faces' areas in [`areas`]; [`path`], with its [`tangent`], then follows the
+//! softening of all pairs at once.
 
 mod areas;
 mod condensed;
 mod path;
 mod settings;
+mod tangent;
 mod work;
 
 use super::record::{GrowthEnd, GrowthEndKind, Observer, Stage};

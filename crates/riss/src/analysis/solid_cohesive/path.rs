@@ -5,7 +5,8 @@
 //! tangent of the path take its place [Riks1979].
 
 use super::condensed::Condensed;
-use crate::material::CohesiveLaw;
+use super::tangent::Tangent;
+use crate::material::{Cohesion, CohesiveLaw};
 use crate::system::dense_lu::DenseLu;
 use serde::{Deserialize, Serialize};
 
@@ -26,8 +27,6 @@ const ITERATIONS: usize = 14;
 const TRIALS: usize = 8;
 /// A step may come out this many times as long as planned.
 const OVERSHOOT: f64 = 5.0;
-/// Rounds that settle which pairs unload.
-const SETTLINGS: usize = 6;
 
 /// Where a cohesive crack stands. The same state goes on in the same way, bit by bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,6 +40,8 @@ pub struct CohesiveState {
     pub history: Vec<f64>,
     /// Whether each pair has reached its strength.
     pub is_open: Vec<bool>,
+    /// Shear that each pair bore when it opened [stress]; where faces slide freely it fades as the pair softens.
+    pub shear: Vec<[f64; 2]>,
 }
 
 /// What makes a step a step.
@@ -51,23 +52,16 @@ enum Target<'a> {
     Across { tangent: &'a Tangent, from: &'a CohesiveState, length: f64 },
 }
 
-/// Rates of load factor and openings along the path.
-#[derive(Clone)]
-struct Tangent {
-    load_factor: f64,
-    openings: Vec<f64>,
-}
-
 /// Follows the path.
 pub(super) struct Path<'a> {
-    condensed: &'a Condensed,
-    law: &'a CohesiveLaw,
+    pub(super) condensed: &'a Condensed,
+    pub(super) law: &'a CohesiveLaw,
     /// Share of each pair that is cohesive.
-    shares: &'a [f64],
+    pub(super) shares: &'a [f64],
     pub state: CohesiveState,
-    tangent: Option<Tangent>,
+    pub(super) tangent: Option<Tangent>,
     /// Pairs that the last step opened.
-    opened: Vec<usize>,
+    pub(super) opened: Vec<usize>,
     /// First critical load factor.
     first: f64,
     longest: f64,
@@ -83,6 +77,7 @@ impl<'a> Path<'a> {
             openings: vec![0.0; n_columns],
             history: vec![0.0; n],
             is_open: vec![false; n],
+            shear: vec![[0.0; 2]; n],
         };
         Self { condensed, law, shares, state, tangent: None, opened: vec![], first: 0.0, longest: LONGEST }
     }
@@ -144,7 +139,7 @@ impl<'a> Path<'a> {
     }
 
     /// What changes of the load factor are measured by.
-    fn load_unit(&self) -> f64 {
+    pub(super) fn load_unit(&self) -> f64 {
         self.state.load_factor.abs().max(self.first)
     }
 
@@ -153,8 +148,23 @@ impl<'a> Path<'a> {
         self.law.exhaustion(self.condensed.of_pair(pair, tractions).map(|t| t / self.shares[pair]))
     }
 
+    /// Traction of an opened pair and its derivative.
+    fn cohesion(&self, pair: usize, state: &CohesiveState, history: f64) -> Cohesion {
+        let opening = self.condensed.opening_of(pair, &state.openings);
+        let mut found = self.law.cohesion(opening, history);
+        let (effective, largest) = (self.law.effective(opening), history.max(self.law.first_opening()));
+        let [t, slope, _] = self.law.softening(effective.max(largest));
+        for (k, shear) in state.shear[pair].into_iter().enumerate() {
+            found.traction[k + 1] += shear * t / self.law.strength;
+            if effective >= largest {
+                found.tangent[k + 1][0] += shear * slope / self.law.strength;
+            }
+        }
+        found
+    }
+
     /// Unknown columns.
-    fn open_columns(&self) -> Vec<(usize, usize)> {
+    pub(super) fn open_columns(&self) -> Vec<(usize, usize)> {
         let columns = &self.condensed.columns;
         let open = (0..self.shares.len()).filter(|k| self.state.is_open[*k]);
         open.flat_map(|k| (columns[k]..columns[k + 1]).map(move |c| (k, c))).collect()
@@ -166,7 +176,7 @@ impl<'a> Path<'a> {
         let tractions = c.tractions(trial.load_factor, &trial.openings);
         let own = |(pair, column): &(usize, usize)| {
             let k = column - c.columns[*pair];
-            let cohesion = self.law.cohesion(c.opening_of(*pair, &trial.openings), trial.history[*pair]);
+            let cohesion = self.cohesion(*pair, trial, trial.history[*pair]);
             tractions[c.rows[*pair] + k] - self.shares[*pair] * cohesion.traction[k]
         };
         (unknown.iter().map(own).collect(), tractions)
@@ -176,13 +186,17 @@ impl<'a> Path<'a> {
     ///
     /// - `history`: of each pair, which decides whether it loads
     /// - `last`: coefficients of the openings, then that of the load factor
-    fn factored(&self, unknown: &[(usize, usize)], trial: &CohesiveState, history: &[f64], last: &[f64]) -> DenseLu {
+    pub(super) fn factored(
+        &self,
+        unknown: &[(usize, usize)],
+        trial: &CohesiveState,
+        history: &[f64],
+        last: &[f64],
+    ) -> DenseLu {
         let c = self.condensed;
         let n = unknown.len();
-        let cohesion: Vec<_> = unknown
-            .iter()
-            .map(|(pair, _)| self.law.cohesion(c.opening_of(*pair, &trial.openings), history[*pair]).tangent)
-            .collect();
+        let cohesion: Vec<_> =
+            unknown.iter().map(|(pair, _)| self.cohesion(*pair, trial, history[*pair]).tangent).collect();
         DenseLu::new(n + 1, |i, j| {
             if i == n {
                 return last[j];
@@ -271,75 +285,6 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Direction of the path, onwards.
-    fn find_tangent(&self) -> Option<Tangent> {
-        let unknown = self.open_columns();
-        let n = unknown.len();
-        let c = self.condensed;
-        let mut last = vec![0.0; n + 1];
-        if let (true, Some(before)) = (self.opened.is_empty(), &self.tangent) {
-            let (scale, first) = (self.law.opening_scale(), self.load_unit());
-            let units = unknown.iter().map(|(_, column)| before.openings[*column] / (scale * scale));
-            last.iter_mut().zip(units.chain([before.load_factor / (first * first)])).for_each(|(l, v)| *l = v);
-        } else {
-            let is_new = |pair: usize, column: usize| self.opened.contains(&pair) && column == c.columns[pair];
-            unknown.iter().zip(&mut last).for_each(|((p, column), l)| *l = f64::from(is_new(*p, *column)));
-        }
-        let largest = last.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        last.iter_mut().for_each(|v| *v /= largest);
-        // Whoever is at the largest opening so far is taken to go on, until its rate says otherwise.
-        let mut history = self.state.history.clone();
-        for _ in 0..SETTLINGS {
-            let mut right = vec![0.0; n + 1];
-            right[n] = 1.0;
-            self.factored(&unknown, &self.state, &history, &last).solve_in_place(&mut right);
-            if right.iter().any(|v| !v.is_finite()) {
-                return None;
-            }
-            let mut openings = vec![0.0; self.state.openings.len()];
-            unknown.iter().zip(&right).for_each(|((_, column), v)| openings[*column] = *v);
-            let mut changed = false;
-            for pair in (0..self.shares.len()).filter(|k| self.state.is_open[*k]) {
-                let (w, rate) = (c.opening_of(pair, &self.state.openings), c.opening_of(pair, &openings));
-                let loads = self.law.effective(w) >= history[pair];
-                let beta = self.law.shear_ratio.powi(2);
-                let growth = w[0].max(0.0) * rate[0] + beta * (w[1] * rate[1] + w[2] * rate[2]);
-                if loads && growth < 0.0 {
-                    history[pair] *= 1.0 + 1e-6;
-                    changed = true;
-                }
-            }
-            if !changed {
-                return Some(Tangent { load_factor: right[n], openings });
-            }
-        }
-        None
-    }
-
-    /// Largest rate of a tangent, in units of its step.
-    fn size(&self, tangent: &Tangent) -> f64 {
-        let largest = tangent.openings.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        (largest / self.law.opening_scale()).max(tangent.load_factor.abs() / self.load_unit())
-    }
-
-    /// The pair that reaches its strength first within a length, and where.
-    fn next_pair(&self, tangent: &Tangent, length: f64) -> Option<(usize, f64)> {
-        let now = self.tractions();
-        let rates = self.condensed.tractions(tangent.load_factor, &tangent.openings);
-        let mut first: Option<(usize, f64)> = None;
-        for pair in (0..self.shares.len()).filter(|k| !self.state.is_open[*k]) {
-            let own = self.condensed.of_pair(pair, &now).map(|t| t / self.shares[pair]);
-            let gradient = self.law.exhaustion_gradient(own);
-            let rate = self.condensed.of_pair(pair, &rates).map(|t| t / self.shares[pair]);
-            let growth: f64 = gradient.iter().zip(rate).map(|(g, r)| g * r).sum();
-            let reach = (1.0 - self.law.exhaustion(own)) / growth;
-            if growth > 0.0 && reach < first.map_or(length, |f| f.1) {
-                first = Some((pair, reach.max(0.0)));
-            }
-        }
-        first
-    }
-
     fn predicted(&self, tangent: &Tangent, length: f64) -> CohesiveState {
         let mut trial = self.state.clone();
         trial.load_factor += length * tangent.load_factor;
@@ -387,9 +332,20 @@ impl<'a> Path<'a> {
             .filter(|k| !self.state.is_open[*k] && self.exhaustion(*k, &tractions) >= 1.0 - TOGETHER)
             .collect();
         for pair in self.opened.clone() {
+            let (first, strength) = (self.law.first_opening(), self.law.strength);
+            let [n, s, t] = self.condensed.of_pair(pair, &tractions).map(|t| t / self.shares[pair]);
             self.state.is_open[pair] = true;
-            self.state.history[pair] = self.law.first_opening();
-            self.state.openings[self.condensed.columns[pair]] = self.law.first_opening();
+            self.state.history[pair] = first;
+            // Whatever the pair bears when it opens, it bears still.
+            let opening = if self.law.shear_ratio == 0.0 {
+                self.state.shear[pair] = [s, t];
+                [first, 0.0, 0.0]
+            } else {
+                let across = strength * self.law.shear_ratio.powi(2);
+                [first * n.max(0.0) / strength, first * s / across, first * t / across]
+            };
+            let columns = self.condensed.columns[pair]..self.condensed.columns[pair + 1];
+            columns.zip(opening).for_each(|(column, w)| self.state.openings[column] = w);
         }
     }
 }
