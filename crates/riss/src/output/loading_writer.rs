@@ -5,7 +5,7 @@ use super::solid_files::{cracks_with, nodes};
 use super::solid_report::solid_report;
 use super::solid_results::{LoadCurvePoint, SolidResults};
 use super::vtk::collection;
-use super::whole_file::write_whole;
+use super::whole_file::{write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::{LoadingRecord, LoadingStep, SolidResult};
 use crate::model::SolidModel;
@@ -76,11 +76,7 @@ impl LoadingWriter {
         results.files.extend(files.iter().map(|f| f.0.clone()).chain([REPORT_FILE.to_string()]));
         files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
         files.push((RESULTS_FILE.into(), (serde_json::to_string_pretty(&results)? + "\n").into_bytes()));
-        let write = |(name, content): &(String, Vec<u8>)| {
-            let path = self.dir.join(name);
-            write_whole(&path, content).map(|()| path)
-        };
-        files.iter().map(write).collect()
+        write_all(&self.dir, &files)
     }
 }
 

@@ -4,7 +4,7 @@ use super::report::REPORT_FILE;
 use super::solid_report::solid_report;
 use super::solid_results::SolidResults;
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
-use super::whole_file::write_whole;
+use super::whole_file::{write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::SolidResult;
 use crate::math::Matrix;
@@ -50,11 +50,7 @@ pub fn write_solid_results(
     let mut text = serde_json::to_string_pretty(&results)?;
     text.push('\n');
     files.push((RESULTS_FILE.into(), text.into_bytes()));
-    let write = |(name, content): &(String, Vec<u8>)| {
-        let path = dir.join(name);
-        write_whole(&path, content).map(|()| path)
-    };
-    files.iter().map(write).collect()
+    write_all(dir, &files)
 }
 
 /// The results in a folder, if they are those of a solid.

@@ -6,7 +6,7 @@ use super::solid_files::{cracks, nodes, read_solid_results};
 use super::solid_report::solid_report;
 use super::solid_results::{SolidResults, SolidStepResults};
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
-use super::whole_file::write_whole;
+use super::whole_file::write_all;
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::{SolidGrowthState, SolidStep};
 use crate::crack::GrowingCrack;
@@ -82,11 +82,7 @@ impl SolidWriter {
         results.grown(self.steps.clone(), step.end.clone());
         files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
         files.push((RESULTS_FILE.into(), (serde_json::to_string_pretty(&results)? + "\n").into_bytes()));
-        let write = |(name, content): &(String, Vec<u8>)| {
-            let path = self.dir.join(name);
-            write_whole(&path, content).map(|()| path)
-        };
-        files.iter().map(write).collect()
+        write_all(&self.dir, &files)
     }
 }
 

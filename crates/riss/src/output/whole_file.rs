@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes `content` to `path` by way of a temporary file in the same folder; an older file stays until the new one
 /// is complete.
@@ -46,6 +46,18 @@ fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut file: File = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
     file.write_all(content)?;
     file.sync_all()
+}
+
+/// Writes files of a folder one after the other, each by its name; returns their paths.
+///
+/// # Errors
+/// What the system says of the first that cannot be written.
+pub(super) fn write_all(dir: &Path, files: &[(String, Vec<u8>)]) -> io::Result<Vec<PathBuf>> {
+    let write = |(name, content): &(String, Vec<u8>)| {
+        let path = dir.join(name);
+        write_whole(&path, content).map(|()| path)
+    };
+    files.iter().map(write).collect()
 }
 
 #[cfg(test)]

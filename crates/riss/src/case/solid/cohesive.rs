@@ -1,7 +1,7 @@
 //! Cohesive cracks of a solid and how they are loaded.
 
 use super::body::bounds;
-use super::schema::{SolidCrack, SolidFile, Triple};
+use super::schema::{SolidBox, SolidCrack, SolidFile};
 use crate::analysis::LoadingSettings;
 use crate::case::build::report::Report;
 use crate::material::{CohesiveLaw, Softening};
@@ -26,16 +26,6 @@ pub(in crate::case) struct SolidCohesive {
     pub shear_ratio: f64,
 }
 
-/// A box in which a cohesive crack is open.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(in crate::case) struct Notch {
-    /// Corner of least coordinates [length].
-    pub lower: Triple,
-    /// Corner of greatest coordinates [length].
-    pub upper: Triple,
-}
-
 /// What of a crack is cohesive, if anything is.
 pub(super) fn crack(crack: &SolidCrack, key: &str, report: &mut Report) -> Option<CohesiveCrack> {
     if !crack.cohesive {
@@ -47,10 +37,7 @@ pub(super) fn crack(crack: &SolidCrack, key: &str, report: &mut Report) -> Optio
     if crack.pressure.is_some() {
         report.error(format!("{key}.pressure"), "a cohesive crack is under no pressure").suggest("take it out");
     }
-    let notch = |(index, notch): (usize, &Notch)| {
-        let cuboid = super::schema::SolidBox { lower: notch.lower, upper: notch.upper };
-        bounds(&cuboid, &format!("{key}.notch[{index}]"), report)
-    };
+    let notch = |(index, notch): (usize, &SolidBox)| bounds(notch, &format!("{key}.notch[{index}]"), report);
     Some(CohesiveCrack { notches: crack.notch.iter().enumerate().filter_map(notch).collect() })
 }
 

@@ -1,6 +1,6 @@
 //! What the case file of a solid may say. Shape only: ranges and sense are checked in the files beside.
 
-use super::cohesive::{Notch, SolidCohesive};
+use super::cohesive::SolidCohesive;
 use super::exact::SolidExact;
 use super::growth::SolidGrowth;
 use crate::analysis::LoadingSettings;
@@ -221,7 +221,7 @@ pub(in crate::case) struct SolidCrack {
     /// Boxes in which a cohesive crack is open and free from the beginning.
     #[serde(default)]
     #[schemars(length(max = 1000))]
-    pub notch: Vec<Notch>,
+    pub notch: Vec<SolidBox>,
 }
 
 /// A disc.
