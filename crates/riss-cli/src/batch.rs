@@ -198,14 +198,14 @@ fn run_plane(case: &Case, folder: &Path) -> Result<Results, String> {
 
 fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
     let mut progress = Progress::new(true);
+    if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
+        let followed = solid_loading::follow(case, cohesive, loading, folder, progress)?;
+        return followed.map(|f| f.results).ok_or_else(|| "stopped before the end".into());
+    }
     if let Some(growth) = &case.growth {
         let (writer, state) = solid_grow::begin(case, folder)?;
         solid_grow::follow(case, growth, writer, state, progress, Speech::Nothing)?;
         return read_solid_results(folder).ok_or_else(|| "the results cannot be read".into());
-    }
-    if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
-        let followed = solid_loading::follow(case, cohesive, loading, folder, progress)?;
-        return followed.map(|f| f.results).ok_or_else(|| "stopped before the end".into());
     }
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();

@@ -32,14 +32,14 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
         Err(e) => return cannot_write("the results", dir, &e),
     };
     let mut progress = Progress::new(arguments.quiet || arguments.log.is_on_terminal());
+    if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
+        interrupt::listen();
+        return solid_loading::load(arguments, case, cohesive, loading, dir, progress);
+    }
     if let Some(growth) = &case.growth {
         interrupt::listen();
         let speech = if arguments.json { Speech::Json } else { Speech::Table };
         return solid_grow::grow(arguments, case, growth, dir, progress, speech);
-    }
-    if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
-        interrupt::listen();
-        return solid_loading::load(arguments, case, cohesive, loading, dir, progress);
     }
     let outcome = solid_static(&case.model, &case.settings, &mut progress);
     let wall_time_s = progress.finish();

@@ -67,7 +67,7 @@ pub fn follow(
     let unwritten = |e: &io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(e));
     let writer = LoadingWriter::new(dir).map_err(|e| unwritten(&e))?;
     let mut watch = Watch { writer, progress, error: None };
-    let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, &mut watch);
+    let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), &mut watch);
     let wall_time_s = watch.progress.finish();
     if let Some(e) = &watch.error {
         return Err(unwritten(e));
@@ -83,7 +83,7 @@ pub fn follow(
         stage_time_s: std::mem::take(&mut watch.progress.stage_time_s),
         peak_memory_bytes: peak_memory_bytes(),
     };
-    let results = watch.writer.results(&case.model, &info, &record).ok_or("the load curve has no peak")?;
+    let results = watch.writer.results(&info, &record).ok_or("the load curve has no peak")?;
     let files = watch.writer.finish(results.clone()).map_err(|e| unwritten(&e))?;
     Ok(Some(Followed { record, results, files }))
 }

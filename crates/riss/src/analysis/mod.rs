@@ -32,7 +32,7 @@ pub use node_function::{NodeFunction, nearest_node, sample_node_function};
 pub use record::*;
 pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;
-pub use solid_cohesive::{LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, solid_loading};
+pub use solid_cohesive::{GrownSurface, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, solid_loading};
 pub use solid_growth::{FrontCriterion, SolidGrowthSettings, SolidGrowthState, SolidStep, solid_growth};
 pub use solid_record::{FrontPointRecord, FrontRecord, OpenedCrack, SolidResult};
 pub use solid_static::{SolidSettings, solid_collocation, solid_nodes, solid_static};

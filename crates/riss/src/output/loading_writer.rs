@@ -8,7 +8,6 @@ use super::vtk::collection;
 use super::whole_file::{write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::{LoadingRecord, LoadingStep, SolidResult};
-use crate::model::SolidModel;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -54,8 +53,8 @@ impl LoadingWriter {
     }
 
     /// The results of the whole run, if its peak was written.
-    pub fn results(&self, model: &SolidModel, info: &RunInfo, record: &LoadingRecord) -> Option<SolidResults> {
-        let mut results = SolidResults::new(model, info, self.at_peak.as_ref()?, vec![]);
+    pub fn results(&self, info: &RunInfo, record: &LoadingRecord) -> Option<SolidResults> {
+        let mut results = SolidResults::new(&record.model, info, self.at_peak.as_ref()?, vec![]);
         results.loaded(record);
         Some(results)
     }

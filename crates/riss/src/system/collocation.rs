@@ -7,6 +7,7 @@
 use super::block_rows::{Block, BlockRows, CHUNK, RowChunk};
 use super::collocation_settings::CollocationSettings;
 use super::node_conditions::{NodeConditions, Strong, StrongTerm};
+use super::tied_faces::Row;
 use crate::approximation::visible_nodes::ball_radius;
 use crate::approximation::{ConstrainedMls, EnrichedFront, FitBuffer, ShapeFunctions};
 use crate::error::{Error, Result};
@@ -14,7 +15,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Opaque;
 use crate::material::PlaneState;
 use crate::math::{Matrix, Vector};
-use crate::model::Solid;
+use crate::model::{Solid, SurfacePoint};
 use crate::nodes::cloud::{Cloud, Place};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -135,6 +136,23 @@ impl<const D: usize> Collocation<D> {
                 Ok(s.shape.gradient(displacements))
             })
             .collect()
+    }
+
+    /// Equilibrium of the layer of half a spacing on the crack face of a node, in its free directions and at the scale of
+    /// its equation.
+    pub(super) fn layer(&self, node: u32) -> Result<Row<D>> {
+        let Scratch { mut buffer, mut shape, mut entries, mut conditions } = Scratch::default();
+        conditions.look_up(&self.solid, self.cloud(), node as usize, &self.settings);
+        let (position, sight) = (self.cloud().positions[node as usize], self.cloud().sights[node as usize]);
+        let radius = self.approximation.at_node(node, sight, &mut buffer, &mut shape)?;
+        let h = radius / ball_radius::<D>(shape.neighbors.len());
+        let factor =
+            (Matrix::identity() - conditions.fixed) * (0.5 * h * h / self.solid.material.young * conditions.face_share);
+        let load = self.solid.body_force.value(&SurfacePoint::inside(position));
+        let term = StrongTerm { equation: Strong::Equilibrium, load, sight };
+        self.add_term(&term, &factor, &shape, &mut entries);
+        let (columns, blocks) = entries.into_iter().unzip();
+        Ok(Row { columns, blocks, load: factor * load })
     }
 
     fn add_row(&self, node: u32, scratch: &mut Scratch<D>, part: &mut Part<D>) -> Result<()> {

@@ -3,11 +3,16 @@
 //! Both nodes of a pair move as one, `u_a = u_b + w` with a given opening `w`, and the sum of their equations holds, in
 //! which the traction between them cancels. The matrix is then the same for every opening, and tractions and displacements
 //! are linear in the load and in the openings.
+//!
+//! The sum is that of the forces on the layer of half a spacing on both faces,
+//! `t_a + t_b - (h_a div σ_a + h_b div σ_b)/2`: near the edge of a surface both nodes see the same neighbors, and the
+//! tractions alone would say nothing.
 
 use super::block_rows::{Block, BlockRows, CHUNK, RowChunk};
-use super::collocation::CollocationSystem;
-use crate::math::Matrix;
-use crate::math::Vector;
+use super::collocation::{Collocation, CollocationSystem};
+use crate::error::Result;
+use crate::math::{Matrix, Vector};
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// A pair is tied along directions that its supports leave free by more than this sine.
@@ -58,20 +63,30 @@ pub struct TiedFaces<const D: usize> {
     pub system: CollocationSystem<D>,
     /// Rows of the first node of each pair, which its opening moves to the right-hand side.
     columns: Vec<Vec<(u32, Block<D>)>>,
-    /// Equation of the second node of each pair by itself.
+    /// Forces on the layer of the second node of each pair by itself.
     rows: Vec<Row<D>>,
 }
 
 /// An equation of a node.
-struct Row<const D: usize> {
-    columns: Vec<u32>,
-    blocks: Vec<Block<D>>,
-    load: Vector<D>,
+pub(super) struct Row<const D: usize> {
+    pub columns: Vec<u32>,
+    pub blocks: Vec<Block<D>>,
+    pub load: Vector<D>,
 }
 
 impl<const D: usize> TiedFaces<D> {
     /// Ties pairs of nodes.
-    pub fn new(system: &CollocationSystem<D>, pairs: Vec<TiedPair<D>>) -> Self {
+    ///
+    /// # Errors
+    /// Those of the shape functions.
+    pub fn new(collocation: &Collocation<D>, system: &CollocationSystem<D>, pairs: Vec<TiedPair<D>>) -> Result<Self> {
+        let layers: Vec<[Row<D>; 2]> = pairs
+            .par_iter()
+            .map(|p| {
+                let [first, second] = p.nodes.map(|i| collocation.layer(i as u32));
+                Ok([first?, second?])
+            })
+            .collect::<Result<_>>()?;
         let n = system.tangent.n_rows();
         let pair_of_first: FxHashMap<u32, usize> =
             pairs.iter().enumerate().map(|(k, p)| (p.nodes[0] as u32, k)).collect();
@@ -84,8 +99,7 @@ impl<const D: usize> TiedFaces<D> {
             let mut chunk = RowChunk::default();
             for i in start..(start + CHUNK).min(n) {
                 entries.clear();
-                let mut add = |from: usize, weight: f64| {
-                    let (own, blocks) = system.tangent.row(from);
+                let mut add = |(own, blocks): (&[u32], &[Block<D>]), weight: f64| {
                     for (j, block) in own.iter().zip(blocks) {
                         let block = block.map(|r| r.map(|v| v * weight));
                         match pair_of_first.get(j) {
@@ -103,12 +117,16 @@ impl<const D: usize> TiedFaces<D> {
                     load[i * D..(i + 1) * D].fill(0.0);
                     fixed[i] = Matrix::identity();
                 } else {
-                    add(i, 1.0);
+                    add(system.tangent.row(i), 1.0);
                     if let Some(&k) = pair_of_second.get(&i) {
                         let (first, weight) = (pairs[k].nodes[0], pairs[k].weight);
-                        add(first, weight);
+                        let [of_first, of_second] = &layers[k];
+                        add(system.tangent.row(first), weight);
+                        add((&of_first.columns, &of_first.blocks), weight);
+                        add((&of_second.columns, &of_second.blocks), 1.0);
                         for d in 0..D {
-                            load[i * D + d] += weight * system.load[first * D + d];
+                            load[i * D + d] +=
+                                weight * (system.load[first * D + d] + of_first.load[d]) + of_second.load[d];
                         }
                     }
                 }
@@ -117,15 +135,19 @@ impl<const D: usize> TiedFaces<D> {
             }
             chunks.push(chunk);
         }
-        let row = |p: &TiedPair<D>| {
+        let row = |(p, [_, layer]): (&TiedPair<D>, [Row<D>; 2])| {
             let (columns, blocks) = system.tangent.row(p.nodes[1]);
             let load = Vector::from_column_slice(&system.load[p.nodes[1] * D..(p.nodes[1] + 1) * D]);
-            Row { columns: columns.to_vec(), blocks: blocks.to_vec(), load }
+            Row {
+                columns: columns.iter().copied().chain(layer.columns).collect(),
+                blocks: blocks.iter().copied().chain(layer.blocks).collect(),
+                load: load + layer.load,
+            }
         };
-        let rows = pairs.iter().map(row).collect();
+        let rows = pairs.iter().zip(layers).map(row).collect();
         let face_scales = vec![0.0; n];
         let system = CollocationSystem { tangent: BlockRows::new(chunks), load, fixed, face_scales };
-        Self { pairs, system, columns, rows }
+        Ok(Self { pairs, system, columns, rows })
     }
 
     /// Motions without those of the first nodes, as unit vectors.

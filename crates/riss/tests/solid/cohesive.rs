@@ -20,7 +20,9 @@ fn load(text: &str) -> (LoadingRecord, Vec<LoadingStep>) {
     let AnyCase::Solid(case) = case else { panic!("a solid") };
     let mut kept = Kept::default();
     let cohesive = case.model.cohesive.as_ref().unwrap();
-    let record = solid_loading(&case.model, cohesive, &case.settings, &case.loading.unwrap(), &mut kept).unwrap();
+    let record =
+        solid_loading(&case.model, cohesive, &case.settings, &case.loading.unwrap(), case.growth.as_ref(), &mut kept)
+            .unwrap();
     (record.unwrap(), kept.0)
 }
 

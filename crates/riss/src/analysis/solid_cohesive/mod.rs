@@ -2,16 +2,18 @@
 //!
 //! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with what loads do in
 //! [`work`] and the faces' areas in [`areas`]; [`path`], with its [`tangent`], then follows the
-//! softening of all pairs at once.
+//! softening of all pairs at once. Surfaces that grow do so by [`growing`].
 
 mod areas;
 mod condensed;
+mod growing;
 mod path;
 mod settings;
 mod tangent;
 mod work;
 
 use super::record::{GrowthEnd, GrowthEndKind, Observer, Stage};
+use super::solid_growth::SolidGrowthSettings;
 use super::solid_record::SolidResult;
 use super::solid_static::{Placed, SolidSettings, Solved};
 use crate::error::Result;
@@ -21,6 +23,8 @@ use crate::model::{CohesiveModel, SolidModel};
 use crate::system::{CollocationSolution, CollocationSystem, TiedFaces, TiedPair};
 use areas::{FaceArea, face_areas};
 use condensed::{Condensed, Parting, TiedBody};
+use growing::Growing;
+pub use growing::GrownSurface;
 pub use path::CohesiveState;
 use path::Path;
 use serde::{Deserialize, Serialize};
@@ -31,6 +35,8 @@ use work::Work;
 const LEAST_SHARE: f64 = 0.1;
 /// Faces that pass on more shear than this, over the strength, must be let slide.
 const STICKS: f64 = 0.05;
+/// Where work and energies differ by more than this share of the work, supports of nodes are as large as the ligament.
+const IMBALANCE: f64 = 0.1;
 /// Steps with files of their fields, besides the first, that of the peak and the last.
 const PICTURES: usize = 10;
 
@@ -77,6 +83,10 @@ pub struct LoadingRecord {
     pub peak: usize,
     /// Why it ended.
     pub end: GrowthEnd,
+    /// Its surfaces from first to last, if they grow.
+    pub surfaces: Vec<GrownSurface>,
+    /// The problem with the last of them.
+    pub model: SolidModel,
 }
 
 /// A pair with its area.
@@ -84,9 +94,13 @@ struct Bond {
     /// Index among the pairs of the cloud.
     pair: usize,
     area: FaceArea,
+    /// Its place, if the surface has to grow before it opens.
+    near_front: Option<Vector3>,
 }
 
 /// Loads a solid with cohesive cracks; none if the observer ended it. Steps with fields reach the observer in order.
+///
+/// - `growth`: how the surfaces grow, if they do
 ///
 /// # Errors
 /// Those of nodes, shape functions and solver.
@@ -95,16 +109,65 @@ pub fn solid_loading(
     cohesive: &CohesiveModel,
     settings: &SolidSettings,
     loading: &LoadingSettings,
+    growth: Option<&SolidGrowthSettings>,
     observer: &mut dyn Observer,
 ) -> Result<Option<LoadingRecord>> {
+    let Some(growth) = growth else {
+        let Traced::Done(record) = traced(model, cohesive, settings, loading, None, observer)? else { return Ok(None) };
+        return Ok(record.map(|r| *r));
+    };
+    let mut growing = match Growing::new(model, growth) {
+        Ok(growing) => growing,
+        Err(defect) => return Ok(Some(growing::no_record(model, &defect))),
+    };
+    loop {
+        let settings = growing.settings(settings);
+        match traced(&growing.model, cohesive, &settings, loading, Some(&growing), observer)? {
+            Traced::Reached { solved, place, load_factor } => {
+                growing.extend(&solved, &cohesive.law, place, load_factor)?;
+            }
+            Traced::Done(record) => {
+                return Ok(record.map(|r| LoadingRecord { surfaces: growing.surfaces, ..*r }));
+            }
+        }
+    }
+}
+
+/// What becomes of surfaces under load.
+enum Traced {
+    /// The whole path; none if the observer ended it.
+    Done(Option<Box<LoadingRecord>>),
+    /// A front has to grow before the path goes on.
+    Reached { solved: Box<Solved>, place: Option<Vector3>, load_factor: f64 },
+}
+
+/// Loads the surfaces as they are.
+fn traced(
+    model: &SolidModel,
+    cohesive: &CohesiveModel,
+    settings: &SolidSettings,
+    loading: &LoadingSettings,
+    growing: Option<&Growing<'_>>,
+    observer: &mut dyn Observer,
+) -> Result<Traced> {
     let mut placed = Placed::of(model, settings, observer)?;
     observer.stage(Stage::Assembly);
     let system = placed.collocation.assemble()?;
-    let (pairs, bonds) = bonds(model, &placed, &system, settings);
-    let tied = TiedFaces::new(&system, pairs);
+    let (pairs, bonds) = bonds(model, &placed, &system, settings, growing);
+    if bonds.is_empty() && growing.is_some_and(Growing::may_grow) {
+        // All of the surfaces are open: their fronts are those of an elastic solid.
+        let elastic = SolidModel { cohesive: None, ..model.clone() };
+        let solved = Box::new(Solved::of(&elastic, settings, observer)?);
+        return Ok(Traced::Reached { solved, place: None, load_factor: 0.0 });
+    }
+    let tied = TiedFaces::new(&placed.collocation, &system, pairs)?;
     let work = Work::new(model, &placed.collocation, &settings.spacing)?;
     observer.stage(Stage::Solve);
     let body = TiedBody::new(&placed.collocation, &system, &tied, work)?;
+    let solved = |u: Vec<f64>, effort| {
+        let displacements = u.chunks_exact(3).map(Vector::from_column_slice).collect();
+        CollocationSolution { displacements, effort }
+    };
     let slides = cohesive.law.shear_ratio > 0.0;
     let mut condensed = Condensed::new(&body, if slides { Parting::Full } else { Parting::Normal })?;
     let mut followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds);
@@ -112,24 +175,31 @@ pub fn solid_loading(
         condensed = Condensed::new(&body, Parting::Full)?;
         followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds);
     }
-    let Followed { curve, states, end, .. } = followed;
+    let Followed { curve, states, mut end, reached, .. } = followed;
+    if let (Some(strips), Some(_)) = (growing.and_then(Growing::done), reached) {
+        let reason = format!("the surfaces have grown by {strips} strips, and the next would be due");
+        end = GrowthEnd { kind: GrowthEndKind::StepsDone, reason };
+    } else if let (Some(place), Some(state)) = (reached, states.last()) {
+        let (u, effort) = body.solve(state.load_factor, &openings(&condensed, &tied, state))?;
+        let (load_factor, solution) = (state.load_factor, solved(u, effort));
+        let solved = Box::new(Solved::new(placed, solution));
+        return Ok(Traced::Reached { solved, place: Some(place), load_factor });
+    }
     let peak = (0..curve.len()).fold(0, |m, k| if curve[k].load.abs() > curve[m].load.abs() { k } else { m });
     for point in pictures(&curve, peak) {
         observer.stage(Stage::Solve);
         let state = &states[point];
-        let openings = openings(&condensed, &tied, state);
-        let (u, effort) = body.solve(state.load_factor, &openings)?;
-        let displacements = u.chunks_exact(3).map(Vector::from_column_slice).collect();
+        let (u, effort) = body.solve(state.load_factor, &openings(&condensed, &tied, state))?;
         let tractions = tractions(model, &placed, &condensed, &bonds, state);
-        let solved = Solved::new(placed, CollocationSolution { displacements, effort });
-        let (result, again) = solved.result_and_place(model, settings, observer)?;
+        let (result, again) = Solved::new(placed, solved(u, effort)).result_and_place(model, settings, observer)?;
         placed = again;
         let step = LoadingStep { point, values: curve[point], result, tractions, is_peak: point == peak };
         if observer.loading_step(&step).is_break() {
-            return Ok(None);
+            return Ok(Traced::Done(None));
         }
     }
-    Ok(Some(LoadingRecord { curve, peak, end }))
+    let record = LoadingRecord { curve, peak, end, surfaces: vec![], model: model.clone() };
+    Ok(Traced::Done(Some(Box::new(record))))
 }
 
 /// The pairs that are tied.
@@ -138,6 +208,7 @@ fn bonds(
     placed: &Placed,
     system: &CollocationSystem<3>,
     settings: &SolidSettings,
+    growing: Option<&Growing<'_>>,
 ) -> (Vec<TiedPair<3>>, Vec<Bond>) {
     let (mut pairs, mut bonds) = (vec![], vec![]);
     let positions = &placed.collocation.cloud().positions;
@@ -155,7 +226,8 @@ fn bonds(
                 && let Some(tied) = TiedPair::new(nodes, normal, system)
             {
                 pairs.push(tied);
-                bonds.push(Bond { pair, area });
+                let near_front = growing.filter(|g| g.is_near_front(crack, place)).map(|_| place);
+                bonds.push(Bond { pair, area, near_front });
             }
         }
     }
@@ -169,6 +241,8 @@ struct Followed {
     end: GrowthEnd,
     /// Largest shear between opened faces that cannot slide [stress].
     most_shear: f64,
+    /// Where the path ends because a front has to grow.
+    reached: Option<Vector3>,
 }
 
 fn follow(
@@ -185,6 +259,7 @@ fn follow(
         states: vec![path.state.clone()],
         end: GrowthEnd { kind: GrowthEndKind::NoTipGrows, reason: "no load opens a cohesive crack".into() },
         most_shear: 0.0,
+        reached: None,
     };
     let mut done = [0.0; 2];
     let mut goes_on = path.begin();
@@ -208,9 +283,22 @@ fn follow(
             followed.most_shear = followed.most_shear.max(if is_stuck { s.hypot(t) } else { 0.0 });
         }
         greatest = greatest.max(point.load.abs());
+        followed.reached = (0..bonds.len()).filter(|k| path.state.is_open[*k]).find_map(|k| bonds[k].near_front);
+        if followed.reached.is_some() {
+            break;
+        }
         let end = |kind, reason: String| Some(GrowthEnd { kind, reason });
         let limit = loading.largest_displacement.filter(|u| point.displacement.abs() >= *u);
-        let ended = if point.load.abs() <= loading.stop_load * greatest {
+        let imbalance = (point.external_work - point.elastic_energy - point.dissipated_energy) / point.external_work;
+        let ended = if imbalance.abs() > IMBALANCE {
+            end(
+                GrowthEndKind::Failed,
+                format!(
+                    "work and energy differ by {:.0} %: the nodes are too coarse for what is left of the ligament, use a smaller spacing",
+                    100.0 * imbalance.abs()
+                ),
+            )
+        } else if point.load.abs() <= loading.stop_load * greatest {
             end(GrowthEndKind::LimitReached, format!("the load has fallen to {} of its peak", loading.stop_load))
         } else if let Some(limit) = limit {
             end(GrowthEndKind::LimitReached, format!("the displacement has reached {limit}"))

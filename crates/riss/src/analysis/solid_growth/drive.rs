@@ -24,7 +24,7 @@ const INSIDE: f64 = 0.1;
 
 /// The steps of all fronts.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drive {
+pub(in crate::analysis) struct Drive {
     /// For each crack, each front, each vertex.
     pub steps: Vec<Vec<Vec<FrontStep>>>,
     /// Largest stress over the strength, or largest equivalent factor; none if it is known nowhere.
@@ -39,7 +39,7 @@ impl Drive {
 }
 
 /// By the largest principal stress.
-pub(super) fn by_strength(
+pub(in crate::analysis) fn by_strength(
     model: &SolidModel,
     solved: &Solved,
     cracks: &[GrowingCrack],
@@ -146,7 +146,7 @@ pub(super) fn by_factors(
 }
 
 /// Distance to a front, and the length along it of the nearest point.
-fn place_on(front: &CrackFront, p: Vector3) -> (f64, f64) {
+pub(in crate::analysis) fn place_on(front: &CrackFront, p: Vector3) -> (f64, f64) {
     let to_segment = |(k, [a, b]): (usize, [Vector3; 2])| {
         let e = b - a;
         let t = ((p - a).dot(&e) / e.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);

@@ -2,7 +2,7 @@
 //!
 //! Reading order: [`settings`], [`SolidGrowthState`], [`solid_growth`], [`drive`] (how each vertex moves).
 
-mod drive;
+pub(super) mod drive;
 pub mod settings;
 
 use super::record::{GrowthEnd, GrowthEndKind, Observer};
@@ -64,17 +64,20 @@ impl SolidGrowthState {
     }
 
     /// The problem with the cracks as they are now.
-    fn model(&self, model: &SolidModel) -> std::result::Result<SolidModel, CrackDefect> {
+    pub(in crate::analysis) fn model(&self, model: &SolidModel) -> std::result::Result<SolidModel, CrackDefect> {
         let surfaces = self.cracks.iter().map(|c| CrackSurface::new(&c.shape(), &model.body));
         let mut current = model.clone();
         current.cracks = surfaces.collect::<std::result::Result<Vec<_>, _>>()?;
         current.crack_names = self.sources.iter().map(|s| model.crack_names[*s].clone()).collect();
         current.solid.faces = self.sources.iter().map(|s| model.solid.faces[*s].clone()).collect();
+        if let (Some(now), Some(before)) = (&mut current.cohesive, &model.cohesive) {
+            now.cracks = self.sources.iter().map(|s| before.cracks[*s].clone()).collect();
+        }
         Ok(current)
     }
 
     /// The state after the fronts moved.
-    fn advanced(
+    pub(in crate::analysis) fn advanced(
         &self,
         steps: &[Vec<Vec<FrontStep>>],
         limits: &EdgeLimits,
@@ -105,7 +108,8 @@ impl SolidGrowthState {
         Ok(Self { step: self.step + 1, cracks, sources })
     }
 
-    fn areas(&self) -> Vec<f64> {
+    /// Area of each crack in the body [area].
+    pub(in crate::analysis) fn areas(&self) -> Vec<f64> {
         self.cracks.iter().map(GrowingCrack::area).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::body::bounds;
 use super::schema::{SolidBox, SolidCrack, SolidFile};
-use crate::analysis::LoadingSettings;
+use crate::analysis::{FrontCriterion, LoadingSettings};
 use crate::case::build::report::Report;
 use crate::material::{CohesiveLaw, Softening};
 use crate::model::{CohesiveCrack, CohesiveModel};
@@ -67,9 +67,22 @@ pub(super) fn cohesive(
         }
         return None;
     };
-    if file.growth.is_some() {
-        let message = "cracks of a case with a cohesive one do not grow beyond their surfaces";
-        report.error("growth", message).suggest(format!("take it out, or crack[{index}].cohesive"));
+    if let Some(growth) = &file.growth {
+        let key = "growth.criterion";
+        match growth.criterion {
+            FrontCriterion::LargestPrincipalStress { tensile_strength } if tensile_strength == c.strength => {}
+            FrontCriterion::LargestPrincipalStress { .. } => {
+                let problem = report.error(key, "the strength of a cohesive crack stands in `material.cohesive`");
+                problem.suggest(format!("largest-principal-stress = {{ tensile_strength = {} }}", c.strength));
+            }
+            FrontCriterion::StressIntensityFactors { .. } => {
+                let message =
+                    format!("crack[{index}] is cohesive: its stresses are finite, it has no intensity factors");
+                report
+                    .error(key, message)
+                    .suggest(format!("largest-principal-stress = {{ tensile_strength = {} }}", c.strength));
+            }
+        }
     }
     let sound = [("strength", c.strength), ("fracture_energy", c.fracture_energy)]
         .map(|(key, value)| report.positive(format!("material.cohesive.{key}"), value));

@@ -151,7 +151,7 @@ fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Optio
     let body = body::body(&file, &files, &mut report)?;
     let cracks = cracks::cracks(&file, &body, &files, &mut report);
     let conditions = conditions::conditions(&file, &body, &material, &mut report);
-    let settings = nodes::settings(&file, &body, &cracks.surfaces, &mut report);
+    let settings = nodes::settings(&file, &body, &cracks, &mut report);
     if report.problems.is_empty() && !conditions.acts && !cracks.acts {
         let mut problem = Problem::new("load", "nothing loads the body");
         problem.suggest(

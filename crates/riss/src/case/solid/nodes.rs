@@ -1,6 +1,7 @@
 //! Spacing of nodes and the other numerical choices for a solid.
 
 use super::body::bounds;
+use super::cracks::Cracks;
 use super::schema::{Finer, SolidFile};
 use crate::analysis::SolidSettings;
 use crate::case::build::report::Report;
@@ -24,10 +25,11 @@ const LEAST_SPACING: f64 = 1e-6;
 pub(super) fn settings(
     file: &SolidFile,
     body: &Surface,
-    cracks: &[CrackSurface],
+    cracks: &Cracks,
     report: &mut Report,
 ) -> Option<(SolidSettings, SpacingPlan)> {
     let nodes = &file.nodes;
+    let (cohesive, cracks) = (cracks.cohesive.iter().map(Option::is_some), &cracks.surfaces[..]);
     let size = body.bounds().size().norm();
     let mut sound = true;
     let mut checked = |value: Option<f64>, key: &str, report: &mut Report| {
@@ -46,14 +48,18 @@ pub(super) fn settings(
         return None;
     }
     let largest = nodes.spacing.unwrap_or_else(|| BODY_FRACTION * body.volume().cbrt());
-    let at_front = |crack: &CrackSurface| {
+    let at_front = |(crack, is_cohesive): (&CrackSurface, bool)| {
         let extent = crack.surface.bounds().size().norm() / 2f64.sqrt();
+        if is_cohesive {
+            let step = file.growth.as_ref().map_or(largest, |g| g.increment.abs());
+            return nodes.front_spacing.unwrap_or(step.min(largest));
+        }
         let by_size = (FRONT_FRACTION * extent).min(largest);
         let bend = crack.fronts.iter().map(CrackFront::largest_curvature).fold(f64::MIN_POSITIVE, f64::max);
         let by_bend = (BEND_FRACTION / bend).max(LEAST_FRACTION * extent);
         nodes.front_spacing.unwrap_or(by_size.min(by_bend))
     };
-    let at_fronts: Vec<f64> = cracks.iter().map(at_front).collect();
+    let at_fronts: Vec<f64> = cracks.iter().zip(cohesive).map(at_front).collect();
     let mut regions = wall_regions(body, largest);
     for (index, finer) in nodes.finer.iter().enumerate() {
         regions.extend(finer_regions(finer, &format!("nodes.finer[{index}]"), body, report)?);

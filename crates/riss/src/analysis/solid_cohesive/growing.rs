@@ -1,0 +1,175 @@
+//! Cohesive surfaces that grow ahead of what is broken [C3D, sections 2.4 and 2.5].
+//!
+//! A tied face changes nothing in the body, so that a surface may end anywhere ahead of the places that have reached their
+//! strength. It is loaded from rest until they come near its front; then the front advances across the largest principal
+//! stress as far as that stress is near the strength, and the longer surface is loaded from rest again. The last surface
+//! thus has one path, without values carried over from other nodes.
+
+use super::super::record::{GrowthEnd, GrowthEndKind};
+use super::super::solid_growth::drive::{Drive, by_strength, place_on};
+use super::super::solid_growth::{SolidGrowthSettings, SolidGrowthState};
+use super::super::solid_static::{SolidSettings, Solved};
+use super::{LoadPoint, LoadingRecord};
+use crate::crack::{CrackDefect, EdgeLimits, FrontStep};
+use crate::error::Result;
+use crate::material::CohesiveLaw;
+use crate::math::Vector3;
+use crate::model::SolidModel;
+use crate::nodes::solid::{Region, SpacingPlan};
+use serde::{Deserialize, Serialize};
+
+/// A front moves where the stress ahead is this share of the strength, or of the largest ahead of all fronts if that is less.
+const NEAR: f64 = 0.8;
+/// Fronts this near to the place that reached its strength move in any case, over the increment.
+const AT_PLACE: f64 = 1.5;
+/// Strips in one go at most.
+const STRIPS: usize = 20;
+
+/// Surfaces at one time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GrownSurface {
+    /// Area of each crack in the body, with what is still tied [area].
+    pub areas: Vec<f64>,
+    /// Factor on the loads at which it grew, if it did.
+    pub load_factor: Option<f64>,
+    /// Strips of triangles that it has got since the first.
+    pub strips: usize,
+}
+
+/// Surfaces with their problem.
+pub(super) struct Growing<'a> {
+    first: &'a SolidModel,
+    growth: &'a SolidGrowthSettings,
+    state: SolidGrowthState,
+    pub model: SolidModel,
+    pub surfaces: Vec<GrownSurface>,
+    has_room: bool,
+}
+
+impl<'a> Growing<'a> {
+    /// The surfaces of the case.
+    ///
+    /// # Errors
+    /// [`CrackDefect`] if a crack lies outside the body.
+    pub fn new(first: &'a SolidModel, growth: &'a SolidGrowthSettings) -> std::result::Result<Self, CrackDefect> {
+        let state = SolidGrowthState::first(first)?;
+        let surfaces = vec![GrownSurface { areas: state.areas(), load_factor: None, strips: 0 }];
+        let model = state.model(first)?;
+        Ok(Self { first, growth, state, model, surfaces, has_room: true })
+    }
+
+    /// Settings with nodes as close along cohesive surfaces as at their fronts.
+    pub fn settings(&self, settings: &SolidSettings) -> SolidSettings {
+        let plan = &self.growth.spacing;
+        let mut regions = plan.regions.clone();
+        for (c, source) in self.state.sources.iter().enumerate() {
+            let (surface, cohesive) = (&self.model.cracks[c].surface, self.model.cohesive_crack(c));
+            let all = (0..surface.triangles().len() as u32).map(|t| surface.corners(t));
+            let tied = all.filter(|p| cohesive.is_some_and(|c| !c.is_notch((p[0] + p[1] + p[2]) / 3.0)));
+            regions.extend(tied.map(|corners| (Region::Triangle(corners), plan.at_fronts[*source])));
+        }
+        let plan = SpacingPlan { regions, ..plan.clone() };
+        let spacing = plan.spacing(&self.model.cracks, &self.state.sources);
+        SolidSettings { spacing, ..settings.clone() }
+    }
+
+    /// Whether a place lies so near to the front of its crack that the surface has to grow before it opens.
+    pub fn is_near_front(&self, crack: usize, place: Vector3) -> bool {
+        self.has_room && self.distance(crack, place) < self.growth.increment
+    }
+
+    fn distance(&self, crack: usize, place: Vector3) -> f64 {
+        self.model.cracks[crack].fronts.iter().map(|f| place_on(f, place).0).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether fronts may still grow.
+    pub fn may_grow(&self) -> bool {
+        let is_cohesive = |c: &usize| self.model.cohesive_crack(*c).is_some();
+        self.has_room
+            && (0..self.model.cracks.len()).filter(is_cohesive).any(|c| !self.model.cracks[c].fronts.is_empty())
+    }
+
+    /// Grows the surfaces in a state whose openings came near a front.
+    ///
+    /// - `place`: where; if there is none, nothing is tied yet
+    ///
+    /// # Errors
+    /// Those of the shape functions.
+    pub fn extend(
+        &mut self,
+        solved: &Solved,
+        law: &CohesiveLaw,
+        place: Option<Vector3>,
+        load_factor: f64,
+    ) -> Result<()> {
+        let limits = EdgeLimits::of_increment(self.growth.increment);
+        let strips = self.surfaces[self.surfaces.len() - 1].strips;
+        let largest = self.by_strength(solved, 1.0)?.largest.unwrap_or(0.0);
+        let near = NEAR * if place.is_some() { largest.min(law.strength) } else { largest };
+        let (mut n, mut place) = (0, place);
+        while largest > 0.0 && n < STRIPS && strips + n < self.growth.steps {
+            let drive = self.drive(solved, near, place)?;
+            if drive.n_moving() == 0 {
+                break;
+            }
+            let Ok(next) = self.state.advanced(&drive.steps, &limits, &self.first.body) else { break };
+            let Ok(model) = next.model(self.first) else { break };
+            if next.areas().iter().sum::<f64>() <= self.state.areas().iter().sum::<f64>() {
+                break;
+            }
+            (self.state, self.model) = (next, model);
+            n += 1;
+            place = None;
+        }
+        self.has_room = n > 0;
+        if let Some(last) = self.surfaces.last_mut() {
+            last.load_factor = Some(load_factor);
+        }
+        if n > 0 {
+            let areas = self.state.areas();
+            self.surfaces.push(GrownSurface { areas, load_factor: None, strips: strips + n });
+        }
+        Ok(())
+    }
+
+    fn by_strength(&self, solved: &Solved, strength: f64) -> Result<Drive> {
+        by_strength(&self.model, solved, &self.state.cracks, self.growth.increment, strength)
+    }
+
+    /// How the fronts of cohesive cracks move where the stress reaches `near`, and at `place`.
+    fn drive(&self, solved: &Solved, near: f64, place: Option<Vector3>) -> Result<Drive> {
+        let increment = self.growth.increment;
+        let mut drive = self.by_strength(solved, near)?;
+        for (c, crack) in self.state.cracks.iter().enumerate() {
+            let is_cohesive = self.model.cohesive_crack(c).is_some();
+            for (front, steps) in crack.fronts().iter().zip(&mut drive.steps[c]) {
+                for (point, step) in front.line.points.iter().zip(steps) {
+                    let is_at = |p: Vector3| (p - point.position).norm() <= AT_PLACE * increment;
+                    if !is_cohesive {
+                        *step = FrontStep::none();
+                    } else if place.is_some_and(is_at) && step.direction != Vector3::zeros() {
+                        step.length = increment;
+                    }
+                }
+            }
+        }
+        Ok(drive)
+    }
+
+    /// Number of strips, if there may be no more.
+    pub fn done(&self) -> Option<usize> {
+        let strips = self.surfaces[self.surfaces.len() - 1].strips;
+        (strips >= self.growth.steps).then_some(strips)
+    }
+}
+
+/// The record of surfaces that are none.
+pub(super) fn no_record(model: &SolidModel, defect: &CrackDefect) -> LoadingRecord {
+    LoadingRecord {
+        curve: vec![LoadPoint::default()],
+        peak: 0,
+        end: GrowthEnd { kind: GrowthEndKind::Failed, reason: defect.to_string() },
+        surfaces: vec![],
+        model: model.clone(),
+    }
+}
