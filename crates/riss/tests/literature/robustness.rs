@@ -199,8 +199,8 @@ fn intensities(result: &StaticResult) -> Vec<[f64; 2]> {
 fn check(make: fn() -> Model) {
     let model = make();
     let default = solve(&model, &Settings::default());
-    // Cheap enough to be a default.
-    assert!(default.n_nodes < 3000, "{} nodes", default.n_nodes);
+    // Cheap enough to be a default. Halving the spacing at a tip takes 110 nodes; some bodies have four.
+    assert!(default.n_nodes < 3500, "{} nodes", default.n_nodes);
     let refined = solve(&model, &refined(&model, 0.5, 0.15));
     let (found, fine) = (intensities(&default), intensities(&refined));
     let (difference, thread) = (difference(&found, &fine), std::thread::current());
