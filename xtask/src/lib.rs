@@ -10,6 +10,7 @@ pub mod ci;
 pub mod dist;
 pub mod docs;
 pub mod gallery;
+pub mod instructions;
 pub mod performance;
 pub mod python;
 pub mod reference;

@@ -1,8 +1,9 @@
 //! `cargo xtask <task>`.
 
 use std::process::ExitCode;
+use xtask::instructions::Counts;
 use xtask::performance::Benchmarks;
-use xtask::{bench, calibrate, ci, dist, docs, performance, python, tidy, verify};
+use xtask::{bench, calibrate, ci, dist, docs, instructions, performance, python, tidy, verify};
 
 const TASKS: &str = "usage: cargo xtask <task>
 
@@ -14,7 +15,8 @@ const TASKS: &str = "usage: cargo xtask <task>
   docs    writes the generated pages of the book, and builds the book where mdbook is installed
   python  builds the Python package and tests it, in an environment under `target`
   bench   runs the benchmarks; further words go to `cargo bench`
-  performance  measures speed and memory, and writes the page of the book about them; with --stored from the last\n          run of the benchmarks";
+  performance  measures speed and memory, and writes the page of the book about them; with --stored from the last\n          run of the benchmarks
+  instructions  counts the instructions of some runs, which may not be more than stored; with --store stores them";
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -32,6 +34,8 @@ fn main() -> ExitCode {
         ("bench", rest) => bench::run(rest),
         ("performance", []) => performance::run(Benchmarks::Run),
         ("performance", [flag]) if flag == "--stored" => performance::run(Benchmarks::Stored),
+        ("instructions", []) => instructions::run(Counts::Check),
+        ("instructions", [flag]) if flag == "--store" => instructions::run(Counts::Store),
         ("python", []) => python::test(),
         _ => Err(TASKS.into()),
     };

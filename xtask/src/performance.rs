@@ -1,6 +1,6 @@
 //! `cargo xtask performance`: measures and writes the page of the book about speed.
 
-use crate::{Outcome, build_riss, cargo, root, run as run_command, target_dir};
+use crate::{Outcome, build_riss, cargo, instructions, root, run as run_command, target_dir};
 use riss_expected::{Expected, Target};
 use serde_json::Value;
 use std::fmt::Write;
@@ -68,7 +68,7 @@ pub fn run(benchmarks: Benchmarks) -> Outcome {
     page += &machine();
     page += &rows(&program, reference)?;
     page += &curve(&program, reference)?;
-    page += &instructions(&program)?;
+    page += &part_table(&program)?;
     std::fs::write(root().join(PAGE), page).map_err(|e| format!("{PAGE}: {e}"))
 }
 
@@ -299,20 +299,14 @@ const PARTS: [(&str, &[&str]); 12] = [
 ];
 
 /// Instructions by part of the program, where valgrind is installed.
-fn instructions(program: &Path) -> Result<String, String> {
+fn part_table(program: &Path) -> Result<String, String> {
     let head = "\n## Instructions\n\n";
-    if Command::new("valgrind").arg("--version").output().is_err() {
+    if !instructions::can_count() {
         return Ok(format!("{head}Not measured: valgrind is not installed.\n"));
     }
     let (file, n) = (target_dir().join("performance.callgrind"), 1000.0);
-    let mut command = Command::new("valgrind");
-    command.current_dir(root()).args(["--tool=callgrind", &format!("--callgrind-out-file={}", file.display())]);
-    command.arg(program).args(["run", &format!("cases/{CASE}/case.toml"), "--threads", "1", "--set"]);
-    command.arg(format!("nodes.layout.graded.spacing={:.4}", spacing(n))).arg("--out").arg(out_folder());
-    let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
-    if !output.status.success() {
-        return Err(format!("{command:?}: {}", String::from_utf8_lossy(&output.stderr)));
-    }
+    let set = format!("nodes.layout.graded.spacing={:.4}", spacing(n));
+    instructions::count(program, &["run", &format!("cases/{CASE}/case.toml"), "--threads", "1", "--set", &set], &file)?;
     let annotate = Command::new("callgrind_annotate").args(["--auto=no", "--threshold=100"]).arg(&file).output();
     let table = String::from_utf8_lossy(&annotate.map_err(|e| format!("callgrind_annotate: {e}"))?.stdout).into_owned();
     let (counts, total) = count_parts(&table);

@@ -14,7 +14,8 @@ use crate::approximation::{CrackSmoothing, ShapeFunctions, Surroundings};
 use crate::crack::TipId;
 use crate::error::{Error, Result};
 use crate::fracture::{
-    FacePressure, ForceAt, SolutionField, TipIntegrals, TipLoads, TipView, configurational_forces, tip_integrals,
+    FacePressure, ForceAt, RememberedField, SolutionField, TipIntegrals, TipLoads, TipView, configurational_forces,
+    tip_integrals,
 };
 use crate::geometry::predicates::distance_to_segment;
 use crate::math::Vector2;
@@ -277,7 +278,8 @@ fn evaluate_tip(
             return Ok(record);
         }
     };
-    let field = SolutionField { discrete, solution };
+    let solved = SolutionField { discrete, solution };
+    let field = RememberedField::new(&solved);
     let force = |p: Vector2| body_force_at(model, solution, p);
     let acts = model.body_force.is_some() || solution.imbalance > UNBALANCED;
     let contact = |p: Vector2| contact_pressure(discrete, &solution.contact_pressures, id.crack, p);

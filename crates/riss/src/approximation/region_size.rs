@@ -28,7 +28,7 @@ const SPACINGS_OF_NODES: f64 = 2.0;
 /// On nodes that are as far apart at a tip as elsewhere, polynomials alone follow its field with nodes so far apart or
 /// less, over the free radius. On coarser ones K is off by half a percent, and soon by several percent.
 const FINE: f64 = 1.0 / 100.0;
-/// The same on nodes that are finer at the tip. The default is 1/150; error bars are calibrated up to 1/50.
+/// The same on nodes that are finer at the tip. The default is 1/300; error bars are calibrated up to 1/50.
 const FINE_GRADED: f64 = 1.0 / 20.0;
 /// Nodes are finer at a tip if their spacing is less than this part of what it is elsewhere.
 const GRADED: f64 = 0.5;

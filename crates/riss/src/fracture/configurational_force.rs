@@ -8,7 +8,7 @@
 //! Differs from [CPM, Eqs. 8, 12, 18]: their signs do not agree. Here `g_1 = J > 0`, and the crack grows along `+g`.
 //! Differs from [CPM, Eq. 22]: q is one in the middle of a domain, so that the nodes at the tip count least.
 
-use super::interaction_integral::{FacePressure, ForceAt, GradientField, TipLoads};
+use super::interaction_integral::{FacePressure, ForceAt, GradientField, TOGETHER, TipLoads};
 use super::settings::{FaceTerm, FractureSettings, JIntegral, TipDomainShape};
 use super::tip_domain::{PLATEAU, TipView, rim};
 use crate::error::Result;
@@ -252,14 +252,22 @@ fn sum<F: GradientField, P: Sync>(
     at: impl Fn(&P) -> (Vector2, Vector2) + Sync,
     integrand: impl Fn(&P, &Matrix2) -> Vector2 + Sync,
 ) -> Result<Vector2> {
-    let values: Vec<Vector2> = points
-        .par_iter()
-        .with_min_len(64)
-        .map_init(F::Buffer::default, |buffer, p| {
-            let (position, sight) = at(p);
-            Ok(integrand(p, &field.gradient(position, sight, buffer)?))
+    let mut values = vec![Vector2::zeros(); points.len()];
+    values
+        .par_chunks_mut(TOGETHER)
+        .zip(points.par_chunks(TOGETHER))
+        .with_min_len(64 / TOGETHER)
+        .map_init(<(F::Buffer, Vec<Matrix2>)>::default, |(buffer, gradients), (values, points)| {
+            let mut views = [[Vector2::zeros(); 2]; TOGETHER];
+            let views = &mut views[..points.len()];
+            views.iter_mut().zip(points).for_each(|(view, p)| *view = at(p).into());
+            field.gradients(views, buffer, gradients)?;
+            for ((value, p), gradient) in values.iter_mut().zip(points).zip(gradients.iter()) {
+                *value = integrand(p, gradient);
+            }
+            Ok(())
         })
-        .collect::<Result<_>>()?;
+        .collect::<Result<()>>()?;
     Ok(values.into_iter().fold(Vector2::zeros(), |s, v| s + v))
 }
 

@@ -52,7 +52,7 @@ pub trait GradientField: Sync {
 }
 
 /// Points of a domain that are looked up together.
-const TOGETHER: usize = 4;
+pub(super) const TOGETHER: usize = 4;
 
 /// The gradient of a solution.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! Fracture quantities at crack tips. Moves no crack.
 //!
-//! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] and [`configurational_force`] evaluate them;
+//! [`tip_domain`] lays out domains around a tip, [`interaction_integral`] and [`configurational_force`] evaluate them, over a
+//! [`remembered_field`];
 //! [`growth_criterion`] tells which way the tip would grow, [`fatigue`] how far in a load cycle. In space,
 //! [`front_integral`] evaluates points of a front, and [`rankine`] is the criterion of a strength.
 
@@ -11,6 +12,7 @@ pub mod front_integral;
 pub mod growth_criterion;
 pub mod interaction_integral;
 pub mod rankine;
+pub mod remembered_field;
 pub mod settings;
 pub mod tip_domain;
 
@@ -22,5 +24,6 @@ pub use interaction_integral::{
     FacePressure, ForceAt, GradientField, PressureAt, SolutionField, TipIntegrals, TipLoads, tip_integrals,
 };
 pub use rankine::LargestPrincipal;
+pub use remembered_field::RememberedField;
 pub use settings::{FaceTerm, FractureSettings, JIntegral, TipDomainShape};
 pub use tip_domain::TipView;

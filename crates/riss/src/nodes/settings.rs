@@ -38,7 +38,8 @@ pub struct Graded {
     /// Largest node spacing [length].
     #[schemars(range(min = 0.0))]
     pub spacing: Option<f64>,
-    /// Node spacing at crack tips [length].
+    /// Node spacing at crack tips [length]; a 300th of the free radius if not given, and less by as much as `spacing` is
+    /// below what it is if not given.
     #[schemars(range(min = 0.0))]
     pub tip_spacing: Option<f64>,
     /// Growth of the spacing with distance from where it is smallest, in (0, 1]; about 0.2 is usual.

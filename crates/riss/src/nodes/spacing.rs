@@ -18,8 +18,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Spacing without any feature, as a fraction of √area.
 const BODY_FRACTION: f64 = 1.0 / 25.0;
-/// Nodes along the radius of the free disk around a tip, before grading.
-const TIP_FRACTION: f64 = 1.0 / 150.0;
+/// Spacing at a tip as a fraction of the radius of the free disk around it, where the body's spacing is the default or wider:
+/// what hides nodes behind a crack makes it longer or shorter by up to a tenth of the spacing at its tip, however fine the
+/// nodes are elsewhere.
+const TIP_FRACTION: f64 = 1.0 / 300.0;
 /// Spacing along an arc as a fraction of its radius.
 const ARC_FRACTION: f64 = 0.12;
 /// Spacing as a fraction of the thickness of the body at a boundary point.
@@ -114,9 +116,11 @@ impl SpacingField {
 
     /// The spacing that the features of a model ask for, overruled by what the settings say.
     pub fn of_model(model: &Model, settings: &Graded) -> Self {
-        let largest = settings.spacing.unwrap_or(BODY_FRACTION * model.domain.area().sqrt());
+        let automatic = BODY_FRACTION * model.domain.area().sqrt();
+        let largest = settings.spacing.unwrap_or(automatic);
         let mut field = Self { growth: settings.growth.unwrap_or(GROWTH), ..Self::uniform(largest) };
-        field.add_tips(model, settings.tip_spacing);
+        // Tips are refined with the body: else K would stay as far off as the nodes at the tip leave it.
+        field.add_tips(model, settings.tip_spacing, TIP_FRACTION * (largest / automatic).min(1.0));
         field.add_kinks(model);
         field.add_junctions(model);
         field.add_edges(model);
@@ -181,9 +185,10 @@ impl SpacingField {
         }
     }
 
-    fn add_tips(&mut self, model: &Model, given: Option<f64>) {
+    /// - `fraction`: spacing over the free radius of a tip, if none is `given`
+    fn add_tips(&mut self, model: &Model, given: Option<f64>, fraction: f64) {
         for (tip, frame) in model.tips() {
-            let spacing = given.unwrap_or_else(|| TIP_FRACTION * free_radius(model, tip.crack, frame.position));
+            let spacing = given.unwrap_or_else(|| fraction * free_radius(model, tip.crack, frame.position));
             self.add(Place::Point(frame.position), spacing);
         }
     }

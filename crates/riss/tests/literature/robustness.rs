@@ -24,7 +24,7 @@ fn refined(model: &Model, factor: f64, growth: f64) -> Settings {
     let mut settings = Settings::default();
     settings.nodes.layout = Layout::Graded(Graded {
         spacing: Some(model.domain.area().sqrt() / 25.0 * factor),
-        tip_spacing: Some(tip / 150.0 * factor),
+        tip_spacing: Some(tip / 300.0 * factor),
         growth: Some(growth),
     });
     settings
@@ -199,10 +199,20 @@ fn intensities(result: &StaticResult) -> Vec<[f64; 2]> {
 fn check(make: fn() -> Model) {
     let model = make();
     let default = solve(&model, &Settings::default());
-    // Cheap enough to be a default.
-    assert!(default.n_nodes < 3000, "{} nodes", default.n_nodes);
-    let (found, fine) = (intensities(&default), intensities(&solve(&model, &refined(&model, 0.5, 0.15))));
-    assert!(difference(&found, &fine) <= 0.005, "default {found:?}, refined {fine:?}");
+    // Cheap enough to be a default. Halving the spacing at a tip takes 110 nodes; some bodies have four.
+    assert!(default.n_nodes < 3500, "{} nodes", default.n_nodes);
+    let refined = solve(&model, &refined(&model, 0.5, 0.15));
+    let (found, fine) = (intensities(&default), intensities(&refined));
+    let (difference, thread) = (difference(&found, &fine), std::thread::current());
+    // A row of the table in the book.
+    println!(
+        "| {} | {} | {} | {:.3} |",
+        thread.name().unwrap_or(""),
+        default.n_nodes,
+        refined.n_nodes,
+        100.0 * difference
+    );
+    assert!(difference <= 0.005, "default {found:?}, refined {fine:?}");
 }
 
 #[test]
