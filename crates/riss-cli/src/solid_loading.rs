@@ -2,13 +2,13 @@
 
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
-use crate::table::number;
+use crate::table::{number, units_line};
 use crate::{DONE, STOPPED, desktop, interrupt, results};
 use riss::analysis::{
     GrowthEndKind, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, Observer, Stage, Warning, solid_loading,
 };
 use riss::case::SolidCase;
-use riss::model::CohesiveModel;
+use riss::model::{CohesiveModel, SolidModel};
 use riss::output::{LoadingWriter, REPORT_FILE, RunInfo, RunStatus, SolidResults};
 use std::io;
 use std::ops::ControlFlow;
@@ -33,8 +33,9 @@ pub fn load(
         crate::print(&format!("{}\n", text.unwrap_or_default()));
     } else {
         crate::print(&format!(
-            "{}\n{}\n{}",
+            "{}\n{}{}\n{}",
             case.model.title,
+            units_line(case.units.as_ref()),
             summary(&followed.record),
             results::listed(&followed.files)
         ));
@@ -66,7 +67,7 @@ pub fn follow(
 ) -> Result<Option<Followed>, String> {
     let unwritten = |e: &io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(e));
     let writer = LoadingWriter::new(dir).map_err(|e| unwritten(&e))?;
-    let mut watch = Watch { writer, progress, error: None };
+    let mut watch = Watch { model: &case.model, writer, progress, error: None };
     let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, &mut watch);
     let wall_time_s = watch.progress.finish();
     if let Some(e) = &watch.error {
@@ -77,7 +78,7 @@ pub fn follow(
     let info = RunInfo {
         title: case.model.title.clone(),
         method: "collocation".into(),
-        units: None,
+        units: case.units.clone(),
         status: if is_done { RunStatus::Done } else { RunStatus::Stopped },
         wall_time_s,
         stage_time_s: std::mem::take(&mut watch.progress.stage_time_s),
@@ -110,13 +111,14 @@ fn summary(record: &LoadingRecord) -> String {
 }
 
 /// Writes the steps with fields.
-struct Watch {
+struct Watch<'a> {
+    model: &'a SolidModel,
     writer: LoadingWriter,
     progress: Progress,
     error: Option<io::Error>,
 }
 
-impl Observer for Watch {
+impl Observer for Watch<'_> {
     fn stage(&mut self, stage: Stage) {
         self.progress.stage(stage);
     }
@@ -126,7 +128,7 @@ impl Observer for Watch {
     }
 
     fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {
-        match self.writer.write_step(step) {
+        match self.writer.write_step(self.model, step) {
             Ok(()) if interrupt::is_asked() => ControlFlow::Break(()),
             Ok(()) => ControlFlow::Continue(()),
             Err(e) => {
