@@ -107,6 +107,9 @@ test("the slider shows the steps, and the view turns by mouse and keys", () => w
   assert.notEqual(await picture(page), last);
   await page.locator("#view-reset").click();
   assert.equal(await picture(page), last);
+  await page.locator("#view-whole").click();
+  assert.notEqual(await picture(page), last);
+  await page.locator("#view-reset").click();
   await setSlider(page, "view-opening", 3);
   assert.notEqual(await picture(page), last);
 }));

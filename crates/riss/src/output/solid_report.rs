@@ -99,7 +99,8 @@ fn push_view(page: &mut String, scenes: &Scenes) {
          <span id=\"view-label\"></span>\n\
          <label>opening drawn <input type=\"range\" id=\"view-opening\" min=\"0\" max=\"4\" step=\"0.1\" value=\"1\"></label>\n\
          <span><span class=\"scale\" style=\"background: linear-gradient(90deg, {})\"></span> <span id=\"view-legend\"></span></span>\n\
-         <button type=\"button\" id=\"view-reset\">reset</button></div>\n</section>\n",
+         <button type=\"button\" id=\"view-reset\">reset</button> \
+         <button type=\"button\" id=\"view-whole\">whole body</button></div>\n</section>\n",
         stops.join(", ")
     );
 }

@@ -28,6 +28,9 @@ pub struct Scenes {
     steps: Vec<(usize, Vec<SceneCrack>)>,
 }
 
+/// Vertices and triangles.
+pub(crate) type Triangulated = (Vec<Vector3>, Vec<[u32; 3]>);
+
 /// A crack as it is drawn.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -143,7 +146,7 @@ impl Scenes {
     }
 
     /// Vertices and triangles of all cracks of a step, or of the last.
-    pub(crate) fn surfaces(&self, step: Option<usize>) -> Option<Vec<(Vec<Vector3>, Vec<[u32; 3]>)>> {
+    pub(crate) fn surfaces(&self, step: Option<usize>) -> Option<Vec<Triangulated>> {
         let (_, cracks) = match step {
             None => self.steps.last(),
             Some(step) => self.steps.iter().find(|s| s.0 == step),

@@ -11,21 +11,25 @@
   const [slider, play, opening, status] = ["view-step", "view-play", "view-opening", "view-status"].map(byId);
   const context = canvas.getContext("2d");
 
-  const bounds = { lower: [Infinity, Infinity, Infinity], upper: [-Infinity, -Infinity, -Infinity] };
-  const extend = (x, y, z) => [x, y, z].forEach((v, k) => {
-    bounds.lower[k] = Math.min(bounds.lower[k], v);
-    bounds.upper[k] = Math.max(bounds.upper[k], v);
-  });
-  const body = scenes[0].body;
-  for (let i = 0; i < body.length; i += 3) extend(body[i], body[i + 1], body[i + 2]);
-  for (const scene of scenes) for (const crack of scene.cracks) {
-    for (let i = 0; i < crack.points.length; i += 3) extend(crack.points[i], crack.points[i + 1], crack.points[i + 2]);
+  /** Corner of least coordinates, middle and diagonal of the box around points. */
+  function box(lists) {
+    const lower = [Infinity, Infinity, Infinity], upper = [-Infinity, -Infinity, -Infinity];
+    for (const points of lists) {
+      for (let i = 0; i < points.length; i++) {
+        lower[i % 3] = Math.min(lower[i % 3], points[i]);
+        upper[i % 3] = Math.max(upper[i % 3], points[i]);
+      }
+    }
+    const middle = lower.map((v, k) => 0.5 * (v + upper[k]));
+    return { lower, middle, size: Math.hypot(...lower.map((v, k) => upper[k] - v)) || 1 };
   }
-  const middle = bounds.lower.map((v, k) => 0.5 * (v + bounds.upper[k]));
-  const size = Math.hypot(...bounds.lower.map((v, k) => bounds.upper[k] - v)) || 1;
+  const body = scenes[0].body;
+  const points = scenes.flatMap((s) => s.cracks.map((c) => c.points));
+  const [whole, cracked] = [box([body, ...points]), box(points)];
+  const size = whole.size;
   const largest = Math.max(0, ...scenes.flatMap((s) => s.cracks.flatMap((c) => c.gaps)));
 
-  let turn = -0.6, tilt = 0.45, zoom = 1, shift = [0, 0];
+  let turn, tilt, zoom, shift, middle;
   let step = scenes.length - 1;
   let places = [];
 
@@ -71,7 +75,7 @@
     context.globalAlpha = 1;
     places = [];
     const faces = [];
-    const stretch = largest > 0 ? (0.5 * Number(opening.value) * 0.08 * size) / largest : 0;
+    const stretch = largest > 0 ? (0.5 * Number(opening.value) * 0.12 * cracked.size) / largest : 0;
     for (const crack of scene.cracks) {
       for (const side of stretch > 0 ? [1, -1] : [1]) {
         const at = [];
@@ -119,7 +123,7 @@
     context.fillStyle = text;
     context.font = `${Math.round(12 * width)}px system-ui, sans-serif`;
     ["x", "y", "z"].forEach((name, k) => {
-      const corner = bounds.lower.slice();
+      const corner = whole.lower.slice();
       const from = seen(...corner);
       corner[k] += 0.18 * size;
       const to = seen(...corner);
@@ -190,7 +194,7 @@
   });
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
-    zoom = Math.min(50, Math.max(0.2, zoom * Math.exp(-0.001 * event.deltaY)));
+    zoom = Math.min(200, Math.max(0.2, zoom * Math.exp(-0.001 * event.deltaY)));
     draw();
   }, { passive: false });
   canvas.addEventListener("keydown", (event) => {
@@ -199,7 +203,7 @@
       turn += turns[event.key][0];
       tilt = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, tilt + turns[event.key][1]));
     } else if (event.key === "+" || event.key === "-") {
-      zoom = Math.min(50, Math.max(0.2, zoom * (event.key === "+" ? 1.2 : 1 / 1.2)));
+      zoom = Math.min(200, Math.max(0.2, zoom * (event.key === "+" ? 1.2 : 1 / 1.2)));
     } else if (event.key === "0") {
       reset();
     } else {
@@ -208,10 +212,17 @@
     event.preventDefault();
     draw();
   });
+  /** The cracks over half of the picture, or all of the body. */
   function reset() {
-    [turn, tilt, zoom, shift] = [-0.6, 0.45, 1, [0, 0]];
+    [turn, tilt, shift, middle] = [-0.6, 0.45, [0, 0], cracked.middle];
+    zoom = Math.max(1, (0.5 * size) / cracked.size);
+    if (zoom === 1) middle = whole.middle;
     draw();
   }
+  byId("view-whole").addEventListener("click", () => {
+    [zoom, shift, middle] = [1, [0, 0], whole.middle];
+    draw();
+  });
   byId("view-reset").addEventListener("click", reset);
   slider.addEventListener("input", () => show(Number(slider.value)));
   opening.addEventListener("input", draw);
@@ -233,6 +244,6 @@
   byId("view-steps").hidden = scenes.length < 2;
   window.addEventListener("resize", draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
-  draw();
+  reset();
   document.documentElement.dataset.ready = "";
 })();
