@@ -213,7 +213,7 @@ fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
     let info = RunInfo {
         title: case.model.title.clone(),
         method: "collocation".into(),
-        units: None,
+        units: case.units.clone(),
         status: RunStatus::Done,
         wall_time_s,
         stage_time_s: std::mem::take(&mut progress.stage_time_s),

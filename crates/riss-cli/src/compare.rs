@@ -3,21 +3,22 @@
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::RunRecord;
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DIFFERENT, DONE, STOPPED, diagnostics};
+use crate::{BAD_CASE, DIFFERENT, DONE, STOPPED, diagnostics, solid_compare};
 use clap::Args;
 use riss::analysis::{
     GrowthState, Observer, RefinementRecord, Stage, StaticResult, Warning, crack_growth, linear_static,
 };
-use riss::case::Case;
+use riss::case::{AnyCase, Case};
 use riss::output::results::StepResults;
-use riss::output::{Comparison, RESULTS_FILE, Results, RunStatus, read_results};
+use riss::output::solid_comparison::Tolerances;
+use riss::output::{AnyResults, Comparison, RESULTS_FILE, Results, RunStatus, SolidComparison, read_any_results};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `riss compare`.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  riss compare coarse.riss-out fine.riss-out\n  riss compare case.toml case.toml --set approximation.basis=quadratic\n  riss compare before.riss-out after.riss-out --K 0.5 --path 0.1 --json"
+    after_help = "Examples:\n  riss compare coarse.riss-out fine.riss-out\n  riss compare case.toml case.toml --set approximation.basis=quadratic\n  riss compare before.riss-out after.riss-out --K 0.5 --path 0.1 --json\n  riss compare penny.toml penny.toml --set nodes.front_spacing=0.06"
 )]
 pub struct CompareArguments {
     /// First run: a folder of results, or a case to run now
@@ -32,9 +33,12 @@ pub struct CompareArguments {
     /// Largest difference of K that still agrees [% of its magnitude]
     #[arg(long = "K", value_name = "PERCENT", default_value_t = 1.0)]
     pub k: f64,
-    /// Largest distance of paths that still agrees [% of their length]
+    /// Largest distance of paths, or of fronts of solids, that still agrees [% of their length]
     #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
     pub path: f64,
+    /// Largest difference of load curves that still agrees [% of the peak load]; of stress, where nothing is cracked
+    #[arg(long, value_name = "PERCENT", default_value_t = 1.0)]
+    pub load: f64,
     /// Prints the differences as JSON instead of a table
     #[arg(long)]
     pub json: bool,
@@ -53,33 +57,61 @@ pub fn compare(arguments: &CompareArguments) -> u8 {
         (Ok(first), Ok(second)) => (first, second),
         (Err(code), _) | (_, Err(code)) => return code,
     };
-    let comparison = Comparison::new(&first, &second);
-    if arguments.json {
-        let text = serde_json::to_string_pretty(&comparison).expect("plain values");
-        crate::print(&format!("{text}\n"));
-    } else {
-        crate::print(&describe(&comparison));
+    let (text, json, agrees) = match (&first, &second) {
+        (AnyResults::Plane(first), AnyResults::Plane(second)) => {
+            let comparison = Comparison::new(first, second);
+            let agrees = comparison.agrees(0.01 * arguments.path, 0.01 * arguments.k);
+            (describe(&comparison), serde_json::to_string_pretty(&comparison), agrees)
+        }
+        (AnyResults::Solid(first), AnyResults::Solid(second)) => {
+            let comparison = SolidComparison::new(first, second);
+            let [path, k, load] = [arguments.path, arguments.k, arguments.load].map(|v| 0.01 * v);
+            let agrees = comparison.agrees(&Tolerances { path, k, load });
+            (solid_compare::describe(&comparison), serde_json::to_string_pretty(&comparison), agrees)
+        }
+        (AnyResults::Plane(_), AnyResults::Solid(_)) => return unlike(&arguments.first, &arguments.second),
+        (AnyResults::Solid(_), AnyResults::Plane(_)) => return unlike(&arguments.second, &arguments.first),
+    };
+    match arguments.json {
+        true => crate::print(&format!("{}\n", json.expect("plain values"))),
+        false => crate::print(&text),
     }
-    if comparison.agrees(0.01 * arguments.path, 0.01 * arguments.k) { DONE } else { DIFFERENT }
+    if agrees { DONE } else { DIFFERENT }
 }
 
-fn read_folder(dir: &Path, overrides: &[String]) -> Result<Results, u8> {
+fn unlike(plane: &Path, solid: &Path) -> u8 {
+    eprintln!(
+        "error: {} is a body in the plane and {} a solid: their cracks cannot be compared",
+        plane.display(),
+        solid.display()
+    );
+    BAD_CASE
+}
+
+fn read_folder(dir: &Path, overrides: &[String]) -> Result<AnyResults, u8> {
     if !overrides.is_empty() {
         eprintln!("error: {} holds results: there is nothing to override", dir.display());
         return Err(BAD_CASE);
     }
-    read_results(dir).map_err(|e| {
+    read_any_results(dir).map_err(|e| {
         eprintln!("error: {} cannot be read: {e}", dir.join(RESULTS_FILE).display());
         BAD_CASE
     })
 }
 
 /// Runs a case without writing anything.
-fn run_case(path: &Path, overrides: &[String], is_quiet: bool) -> Result<Results, u8> {
-    let case = Case::read(path, overrides).map_err(|errors| {
+fn run_case(path: &Path, overrides: &[String], is_quiet: bool) -> Result<AnyResults, u8> {
+    let case = AnyCase::read(path, overrides).map_err(|errors| {
         diagnostics::report_errors(&errors);
         BAD_CASE
     })?;
+    match case {
+        AnyCase::Plane(case) => run_plane(&case, is_quiet).map(|r| AnyResults::Plane(Box::new(r))),
+        AnyCase::Solid(case) => solid_compare::run_case(&case, is_quiet).map(|r| AnyResults::Solid(Box::new(r))),
+    }
+}
+
+fn run_plane(case: &Case, is_quiet: bool) -> Result<Results, u8> {
     let mut watch = Watch { progress: Progress::new(is_quiet), steps: vec![], last: None };
     let outcome = match &case.growth {
         Some(growth) => crack_growth(&case.model, &case.settings, growth, None, &mut watch).map(|_| ()),
@@ -87,12 +119,12 @@ fn run_case(path: &Path, overrides: &[String], is_quiet: bool) -> Result<Results
     };
     let wall_time_s = watch.progress.finish();
     if let Err(error) = outcome {
-        eprintln!("error: {}: {error}", path.display());
+        eprintln!("error: {}: {error}", case.path.display());
         return Err(STOPPED);
     }
     let stage_time_s = std::mem::take(&mut watch.progress.stage_time_s);
     let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
-    let info = run.info(&case, RunStatus::Done);
+    let info = run.info(case, RunStatus::Done);
     Ok(watch.last.map(|last| Results::of_steps(&info, &last, watch.steps)).expect("an analysis has a step"))
 }
 

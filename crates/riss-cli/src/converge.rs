@@ -4,24 +4,28 @@ use crate::claim::Claim;
 use crate::memory::MemoryLimit;
 use crate::progress::Progress;
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, results, solid_converge};
 use clap::Args;
-use riss::analysis::{ConvergenceStudy, Limit, RunSize, Settings, converge};
-use riss::case::Case;
+use riss::analysis::{ConvergenceStudy, Limit, RunSize, Settings, SolidSettings, converge, converge_solid};
+use riss::case::AnyCase;
 use riss::crack::End;
-use riss::output::write_convergence;
+use riss::output::{write_convergence, write_solid_convergence};
 use std::path::PathBuf;
+
+/// Spacings over that of the case, if none are given; those of solids stay near: half the spacing takes eight times the nodes.
+const PLANE: [f64; 5] = [2.0, 1.4, 1.0, 0.7, 0.5];
+const SOLID: [f64; 4] = [1.3, 1.15, 1.0, 0.85];
 
 /// Arguments of `riss converge`.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  riss converge plate.toml\n  riss converge plate.toml --factors 2,1,0.5,0.25 --out study"
+    after_help = "Examples:\n  riss converge plate.toml\n  riss converge plate.toml --factors 2,1,0.5,0.25 --out study\n  riss converge penny.toml --set fracture.points=4"
 )]
 pub struct ConvergeArguments {
     /// Case file; its cracks do not grow
     pub case: PathBuf,
-    /// Node spacings of the solutions over that of the case, at least three
-    #[arg(long, value_name = "F,...", value_delimiter = ',', value_parser = factor, default_value = "2,1.4,1,0.7,0.5")]
+    /// Node spacings of the solutions over that of the case, at least three [default: 2,1.4,1,0.7,0.5, of solids 1.3,1.15,1,0.85]
+    #[arg(long, value_name = "F,...", value_delimiter = ',', value_parser = factor)]
     pub factors: Vec<f64>,
     /// Folder for the table and the picture [default: NAME.riss-out in the current folder]
     #[arg(long, value_name = "DIR")]
@@ -46,23 +50,37 @@ fn factor(text: &str) -> Result<f64, String> {
 
 /// Solves on nodes of several spacings and says where K goes; returns the exit code.
 pub fn run(arguments: &ConvergeArguments) -> u8 {
-    let mut factors = arguments.factors.clone();
-    factors.sort_by(f64::total_cmp);
-    factors.dedup();
-    if factors.len() < 3 {
-        eprintln!("error: a limit needs at least three different factors, {} given", factors.len());
-        return BAD_CASE;
-    }
-    let case = match Case::read(&arguments.case, &arguments.overrides) {
+    let case = match AnyCase::read(&arguments.case, &arguments.overrides) {
         Ok(case) => case,
         Err(errors) => {
             diagnostics::report_errors(&errors);
             return BAD_CASE;
         }
     };
-    let finest = factors.first().and_then(|f| case.settings.nodes.scaled(&case.model, *f));
-    let settings = finest.map(|nodes| Settings { nodes, ..case.settings.clone() });
-    let size = settings.map(|s| RunSize::of_plane(&case.model, &s, None));
+    let mut factors = arguments.factors.clone();
+    if factors.is_empty() {
+        factors = match &case {
+            AnyCase::Plane(_) => PLANE.to_vec(),
+            AnyCase::Solid(_) => SOLID.to_vec(),
+        };
+    }
+    factors.sort_by(f64::total_cmp);
+    factors.dedup();
+    if factors.len() < 3 {
+        eprintln!("error: a limit needs at least three different factors, {} given", factors.len());
+        return BAD_CASE;
+    }
+    let size = match &case {
+        AnyCase::Plane(case) => {
+            let finest = case.settings.nodes.scaled(&case.model, factors[0]);
+            let settings = finest.map(|nodes| Settings { nodes, ..case.settings.clone() });
+            settings.map(|s| RunSize::of_plane(&case.model, &s, None))
+        }
+        AnyCase::Solid(case) => {
+            let settings = SolidSettings { spacing: case.settings.spacing.scaled(factors[0]), ..case.settings.clone() };
+            Some(RunSize::of_solid(&case.model, &settings))
+        }
+    };
     if let Some(reason) = size.and_then(|s| arguments.memory_limit.refusal(&s)) {
         crate::fail(&reason);
         return BAD_CASE;
@@ -76,15 +94,31 @@ pub fn run(arguments: &ConvergeArguments) -> u8 {
         }
     };
     let mut progress = Progress::new(arguments.quiet);
-    let study = converge(&case.model, &case.settings, &factors, &mut progress);
+    let outcome = match &case {
+        AnyCase::Plane(case) => {
+            let study = converge(&case.model, &case.settings, &factors, &mut progress);
+            study.map(|s| (case.model.title.clone(), summary(&s), write_convergence(&dir, &s)))
+        }
+        AnyCase::Solid(case) => {
+            if case.growth.is_some() && !arguments.quiet {
+                eprintln!("note: cracks do not grow in a study; [growth] is left aside");
+            }
+            let loading = case.loading.as_ref();
+            let study = converge_solid(&case.model, &case.settings, loading, &factors, &mut progress);
+            study.map(|s| {
+                let text = solid_converge::summary(&s);
+                (case.model.title.clone(), text, write_solid_convergence(&dir, &s))
+            })
+        }
+    };
     progress.finish();
-    match study.map(|study| (summary(&study), write_convergence(&dir, &study))) {
-        Ok((text, Ok(paths))) => {
+    match outcome {
+        Ok((title, text, Ok(paths))) => {
             let lines: String = paths.iter().map(|p| format!("wrote {}\n", p.display())).collect();
-            crate::print(&format!("{}\n\n{text}\n{lines}", case.model.title));
+            crate::print(&format!("{title}\n\n{text}\n{lines}"));
             DONE
         }
-        Ok((_, Err(e))) => {
+        Ok((_, _, Err(e))) => {
             eprintln!("error: cannot write to {}: {}", dir.display(), results::reason(&e));
             STOPPED
         }
@@ -120,7 +154,7 @@ fn summary(study: &ConvergenceStudy) -> String {
 }
 
 /// Order of convergence; a value that hardly changes has none that can be told.
-fn order(limit: &Limit) -> String {
+pub fn order(limit: &Limit) -> String {
     if limit.uncertainty > 1e-12 * limit.value.abs() { format!("{:.2}", limit.order) } else { "-".into() }
 }
 

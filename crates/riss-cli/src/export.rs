@@ -4,7 +4,8 @@ use crate::{BAD_CASE, DONE, STOPPED, results};
 use clap::{Args, ValueEnum};
 use riss::crack::End;
 use riss::output::exports::{BetaReference, CrackFormat, afgrow_table, beta_table, cracks_as, tips};
-use riss::output::{Results, read_results, write_file};
+use riss::output::solid_exports::{SolidCrackFormat, solid_cracks_as};
+use riss::output::{AnyResults, Results, SolidResults, read_any_results, write_file};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `riss export`.
@@ -38,11 +39,11 @@ pub struct ExportArguments {
 /// What can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// cracks.csv: the points of each crack
+    /// cracks.csv: the points of each crack; of solids those of its fronts, with their factors
     Csv,
-    /// cracks.vtp: the cracks as lines, for ParaView
+    /// cracks.vtp: the cracks as lines, in solids as triangles, for ParaView
     Vtp,
-    /// cracks.stl: the cracks as strips of the thickness of the sheet
+    /// cracks.stl: the cracks as strips of the thickness of the sheet, in solids as they are
     Stl,
     /// beta_CRACK_END.txt for each tip: beta factors over crack length, for easigrow --beta file-1d:FILE
     Easigrow,
@@ -60,14 +61,18 @@ fn positive(text: &str) -> Result<f64, String> {
 /// Writes the files; returns the exit code.
 pub fn export(arguments: &ExportArguments) -> u8 {
     let dir = &arguments.dir;
-    let read = match read_results(dir) {
+    let read = match read_any_results(dir) {
         Ok(read) => read,
         Err(e) => {
             eprintln!("error: the results in {} cannot be read: {}", dir.display(), results::reason(&e));
             return BAD_CASE;
         }
     };
-    let files = match contents(arguments, &read) {
+    let files = match &read {
+        AnyResults::Plane(read) => contents(arguments, read),
+        AnyResults::Solid(read) => solid_contents(arguments, read),
+    };
+    let files = match files {
         Ok(files) => files,
         Err(message) => {
             eprintln!("error: {message}");
@@ -103,6 +108,23 @@ fn contents(arguments: &ExportArguments, results: &Results) -> Result<Vec<(Strin
     })?;
     let content = cracks_as(format.1, step).map_err(|e| e.to_string())?;
     Ok(vec![(format.0.into(), content)])
+}
+
+fn solid_contents(arguments: &ExportArguments, read: &SolidResults) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let dir = &arguments.dir;
+    let (name, format) = match arguments.format {
+        Format::Csv => ("cracks.csv", SolidCrackFormat::Csv),
+        Format::Vtp => ("cracks.vtp", SolidCrackFormat::Vtp),
+        Format::Stl => ("cracks.stl", SolidCrackFormat::Stl),
+        Format::Easigrow | Format::Afgrow => {
+            return Err(format!("beta factors are those of tips in the plane, but {} is a solid", dir.display()));
+        }
+    };
+    let content = solid_cracks_as(format, dir, read, arguments.step)
+        .map_err(|e| format!("the cracks in {} cannot be read: {}", dir.display(), results::reason(&e)))?;
+    let wanted = arguments.step.map_or("any crack".into(), |s| format!("step {s}"));
+    let content = content.ok_or_else(|| format!("{wanted} is not in {}", dir.display()))?;
+    Ok(vec![(name.into(), content)])
 }
 
 fn easigrow_files(arguments: &ExportArguments, results: &Results) -> Result<Vec<(String, Vec<u8>)>, String> {

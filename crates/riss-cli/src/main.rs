@@ -34,6 +34,8 @@ mod schema;
 mod selftest;
 mod shape;
 mod solid;
+mod solid_compare;
+mod solid_converge;
 mod solid_grow;
 mod solid_loading;
 mod sweep;
@@ -71,7 +73,7 @@ enum Command {
     Run(run::RunArguments),
     /// Reads and checks a case without running it
     Check(check::CheckArguments),
-    /// Says how far the crack paths and stress intensity factors of two runs are apart
+    /// Says how far the cracks, stress intensity factors and load curves of two runs are apart
     Compare(compare::CompareArguments),
     /// Solves on coarser and finer nodes and says where K goes, and how fast
     Converge(converge::ConvergeArguments),

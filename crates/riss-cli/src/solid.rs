@@ -4,7 +4,7 @@ use crate::claim::Claim;
 use crate::grow::Speech;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
-use crate::table::number;
+use crate::table::{number, units_line};
 use crate::{BAD_CASE, DONE, STOPPED, desktop, diagnostics, interrupt, log, results, solid_grow, solid_loading};
 use riss::analysis::{FrontRecord, RunSize, SolidResult, solid_nodes, solid_static};
 use riss::case::SolidCase;
@@ -51,7 +51,7 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
     let info = RunInfo {
         title: case.model.title.clone(),
         method: "collocation".into(),
-        units: None,
+        units: case.units.clone(),
         status: RunStatus::Done,
         wall_time_s,
         stage_time_s: std::mem::take(&mut progress.stage_time_s),
@@ -81,7 +81,8 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
 fn summary(case: &SolidCase, result: &SolidResult, wall_time_s: f64) -> String {
     let n = result.n_nodes;
     let effort = &result.effort;
-    let mut text = format!("{}\n{n} nodes, {} unknowns, {wall_time_s:.2} s", case.model.title, 3 * n);
+    let units = units_line(case.units.as_ref());
+    let mut text = format!("{}\n{units}{n} nodes, {} unknowns, {wall_time_s:.2} s", case.model.title, 3 * n);
     text += &format!(", {} with {} products\n", effort.method, effort.iterations);
     for front in &result.fronts {
         text += &front_table(&case.model.crack_names[front.crack], front);

@@ -4,7 +4,7 @@ use crate::grow::Speech;
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::resume::{CASE_COPY, Resumed};
 use crate::run::RunArguments;
-use crate::table::number;
+use crate::table::{number, units_line};
 use crate::{BAD_CASE, DONE, STOPPED, desktop, interrupt, log, results};
 use riss::analysis::{
     GrowthEnd, GrowthEndKind, Observer, SolidGrowthSettings, SolidGrowthState, SolidStep, Stage, Warning, solid_growth,
@@ -108,7 +108,7 @@ pub fn follow(
     speech: Speech,
 ) -> Result<(Option<GrowthEnd>, Vec<PathBuf>), String> {
     if speech == Speech::Table {
-        crate::print(&format!("{}\n", case.model.title));
+        crate::print(&format!("{}\n{}", case.model.title, units_line(case.units.as_ref())));
     }
     let mut watch = Watch { case, writer, progress, speech, error: None, files: vec![] };
     let outcome = solid_growth(&case.model, &case.settings, growth, state, &mut watch);
@@ -150,7 +150,7 @@ impl Observer for Watch<'_> {
         let info = RunInfo {
             title: self.case.model.title.clone(),
             method: "collocation".into(),
-            units: None,
+            units: self.case.units.clone(),
             status: if is_done { RunStatus::Done } else { RunStatus::Stopped },
             wall_time_s: self.progress.elapsed_s(),
             stage_time_s: self.progress.stage_time_s.clone(),

@@ -2,7 +2,7 @@
 
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
-use crate::table::number;
+use crate::table::{number, units_line};
 use crate::{DONE, STOPPED, desktop, interrupt, results};
 use riss::analysis::{
     GrowthEndKind, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, Observer, Stage, Warning, solid_loading,
@@ -33,8 +33,9 @@ pub fn load(
         crate::print(&format!("{}\n", text.unwrap_or_default()));
     } else {
         crate::print(&format!(
-            "{}\n{}\n{}",
+            "{}\n{}{}\n{}",
             case.model.title,
+            units_line(case.units.as_ref()),
             summary(&followed.record),
             results::listed(&followed.files)
         ));
@@ -77,7 +78,7 @@ pub fn follow(
     let info = RunInfo {
         title: case.model.title.clone(),
         method: "collocation".into(),
-        units: None,
+        units: case.units.clone(),
         status: if is_done { RunStatus::Done } else { RunStatus::Stopped },
         wall_time_s,
         stage_time_s: std::mem::take(&mut watch.progress.stage_time_s),

@@ -2,14 +2,11 @@
 
 use crate::case::Case;
 use crate::error;
-use crate::solid::{Solid, SolidCase};
 use crate::step::{State, Step};
 use pyo3::prelude::*;
-use riss::analysis::{
-    GrowthEndKind, GrowthState, Observer, Stage, StaticResult, Warning, crack_growth, linear_static, solid_static,
-};
+use riss::analysis::{GrowthEndKind, GrowthState, Observer, Stage, StaticResult, Warning, crack_growth, linear_static};
 use riss::output::results::StepResults;
-use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter, SolidResults, write_solid_results};
+use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,20 +19,29 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// What the run says to Python.
-enum Event {
+pub enum Event<S> {
+    /// A stage begins.
     Stage(&'static str),
+    /// Something that deserves a second look.
     Warning(String),
     /// A step, and where the answer goes: whether to go on.
-    Step(Box<Step>, Sender<bool>),
+    Step(Box<S>, Sender<bool>),
+}
+
+/// Tells of a step and waits for what Python says to it: whether to go on.
+pub fn ask<S>(send: &Sender<Event<S>>, step: S) -> bool {
+    let (answer, wait) = channel();
+    send.send(Event::Step(Box::new(step), answer)).is_ok() && wait.recv().unwrap_or(false)
 }
 
 /// What went wrong in the thread of the run.
-enum Failure {
+pub enum Failure {
+    /// In the analysis.
     Analysis(riss::error::Error),
+    /// Of the files of a folder.
     Files(PathBuf, std::io::Error),
-    Threads(String),
-    SolidGrowth,
-    Stopped,
+    /// In words.
+    Said(String),
 }
 
 /// Runs a case to its end; steps go to `on_step`, which returns whether to go on.
@@ -56,41 +62,22 @@ pub fn run(
 ) -> PyResult<()> {
     let stop = Arc::new(AtomicBool::new(false));
     let (send, receive) = channel();
-    let job = Job { case: case.case.clone(), start: start.map(|s| s.state.clone()), out, threads };
+    let start = start.map(State::plane).transpose()?;
+    let job = Job { case: case.case.clone(), start, out, threads };
     let stopped = stop.clone();
     let worker = std::thread::spawn(move || job.run(send, stopped));
     let answer_step = |step: Step| on_step.call1((step,)).and_then(|goes_on| goes_on.is_truthy());
     listen(py, receive, &stop, worker, [&on_stage, &on_warning], answer_step)
 }
 
-/// Solves a solid, and writes its files if `out` is given.
-///
-/// After Ctrl-C nothing is written, and the run ends with the solution at hand; a second one does not wait for that.
-#[pyfunction]
-#[pyo3(signature = (case, out, threads, on_stage, on_warning))]
-pub fn run_solid(
-    py: Python<'_>,
-    case: &SolidCase,
-    out: Option<PathBuf>,
-    threads: Option<usize>,
-    on_stage: Bound<'_, PyAny>,
-    on_warning: Bound<'_, PyAny>,
-) -> PyResult<Solid> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let (send, receive) = channel();
-    let (case, stopped) = (case.case.clone(), stop.clone());
-    let worker = std::thread::spawn(move || in_pool(threads, || solve_solid(&case, out, send, &stopped)));
-    listen(py, receive, &stop, worker, [&on_stage, &on_warning], |_| Ok(true))
-}
-
 /// Passes on what a run says until it ends.
-fn listen<T: Send>(
+pub fn listen<T: Send, S: Send>(
     py: Python<'_>,
-    receive: Receiver<Event>,
+    receive: Receiver<Event<S>>,
     stop: &AtomicBool,
     worker: JoinHandle<Result<T, Failure>>,
     [on_stage, on_warning]: [&Bound<'_, PyAny>; 2],
-    on_step: impl Fn(Step) -> PyResult<bool>,
+    on_step: impl Fn(S) -> PyResult<bool>,
 ) -> PyResult<T> {
     let receive = Mutex::new(receive);
     let mut failure: Option<PyErr> = None;
@@ -121,18 +108,14 @@ fn listen<T: Send>(
         (None, Ok(Ok(found))) => Ok(found),
         (None, Ok(Err(Failure::Analysis(e)))) => Err(error::of_analysis(&e)),
         (None, Ok(Err(Failure::Files(path, e)))) => Err(error::of_files(&path, &e)),
-        (None, Ok(Err(Failure::Threads(e)))) => Err(error::AnalysisError::new_err(e)),
-        (None, Ok(Err(Failure::SolidGrowth))) => Err(error::AnalysisError::new_err(
-            "cracks of solids grow, and cohesive ones open, in the program alone: riss run; or take [growth] or cohesive = true out",
-        )),
-        (None, Ok(Err(Failure::Stopped))) => Err(error::AnalysisError::new_err("the run was stopped")),
+        (None, Ok(Err(Failure::Said(e)))) => Err(error::AnalysisError::new_err(e)),
         (None, Err(_)) => {
             Err(error::AnalysisError::new_err("this is a bug in riss, not in your case; please report it"))
         }
     }
 }
 
-fn next(receive: &Mutex<Receiver<Event>>) -> Result<Event, RecvTimeoutError> {
+fn next<S>(receive: &Mutex<Receiver<Event<S>>>) -> Result<Event<S>, RecvTimeoutError> {
     receive.lock().map_or(Err(RecvTimeoutError::Disconnected), |r| r.recv_timeout(PATIENCE))
 }
 
@@ -144,11 +127,11 @@ struct Job {
 }
 
 impl Job {
-    fn run(self, send: Sender<Event>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
+    fn run(self, send: Sender<Event<Step>>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
         in_pool(self.threads, || self.run_here(send, stop))
     }
 
-    fn run_here(self, send: Sender<Event>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
+    fn run_here(self, send: Sender<Event<Step>>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
         let Self { case, start, out, .. } = self;
         let output = &case.output;
         let options =
@@ -178,63 +161,14 @@ impl Job {
 }
 
 /// Does a task with a number of threads, or with all there are.
-fn in_pool<T: Send>(n_threads: Option<usize>, task: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {
+pub fn in_pool<T: Send>(
+    n_threads: Option<usize>,
+    task: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
     let pool = n_threads.map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build()).transpose();
-    match pool.map_err(|e| Failure::Threads(format!("cannot start the threads: {e}")))? {
+    match pool.map_err(|e| Failure::Said(format!("cannot start the threads: {e}")))? {
         Some(pool) => pool.install(task),
         None => task(),
-    }
-}
-
-fn solve_solid(
-    case: &riss::case::SolidCase,
-    out: Option<PathBuf>,
-    send: Sender<Event>,
-    stop: &AtomicBool,
-) -> Result<Solid, Failure> {
-    if case.growth.is_some() || case.loading.is_some() {
-        return Err(Failure::SolidGrowth);
-    }
-    let mut listener = SolidListener { send, clock: Clock::new() };
-    let result = solid_static(&case.model, &case.settings, &mut listener).map_err(Failure::Analysis)?;
-    listener.clock.begin(None);
-    if stop.load(Ordering::Relaxed) {
-        return Err(Failure::Stopped);
-    }
-    let info = RunInfo {
-        title: case.model.title.clone(),
-        method: "collocation".into(),
-        units: None,
-        status: RunStatus::Done,
-        wall_time_s: listener.clock.start.elapsed().as_secs_f64(),
-        stage_time_s: listener.clock.stages,
-        peak_memory_bytes: None,
-    };
-    let mut files = vec![];
-    if let Some(dir) = out {
-        let written = write_solid_results(&dir, &case.model, &info, &result);
-        let paths = written.map_err(|e| Failure::Files(dir, e))?;
-        files = paths.iter().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned()).collect();
-    }
-    let record = SolidResults::new(&case.model, &info, &result, files);
-    Ok(Solid { result, record })
-}
-
-/// Passes stages and warnings on to Python.
-struct SolidListener {
-    send: Sender<Event>,
-    clock: Clock,
-}
-
-impl Observer for SolidListener {
-    fn stage(&mut self, stage: Stage) {
-        self.clock.begin(Some(stage));
-        // Nobody listens after a second Ctrl-C.
-        let _ = self.send.send(Event::Stage(stage.name()));
-    }
-
-    fn warning(&mut self, warning: &Warning) {
-        let _ = self.send.send(Event::Warning(warning.to_string()));
     }
 }
 
@@ -253,19 +187,23 @@ fn source(case: &riss::case::Case) -> RunSource {
 }
 
 /// Times of the stages.
-struct Clock {
-    start: Instant,
+pub struct Clock {
+    /// When the run began.
+    pub start: Instant,
     current: Option<(Stage, Instant)>,
-    stages: Vec<(String, f64)>,
+    /// Stages with their times [s].
+    pub stages: Vec<(String, f64)>,
     n_taken: usize,
 }
 
 impl Clock {
-    fn new() -> Self {
+    /// Starts it.
+    pub fn new() -> Self {
         Self { start: Instant::now(), current: None, stages: vec![], n_taken: 0 }
     }
 
-    fn begin(&mut self, stage: Option<Stage>) {
+    /// Ends the stage at hand and begins another.
+    pub fn begin(&mut self, stage: Option<Stage>) {
         if let Some((stage, since)) = self.current.take() {
             self.stages.push((stage.name().into(), since.elapsed().as_secs_f64()));
         }
@@ -276,7 +214,7 @@ impl Clock {
 /// Passes everything on to Python, and writes files.
 struct Listener<'a> {
     case: &'a riss::case::Case,
-    send: Sender<Event>,
+    send: Sender<Event<Step>>,
     stop: Arc<AtomicBool>,
     writer: Option<RunWriter>,
     clock: Clock,
@@ -329,9 +267,7 @@ impl Observer for Listener<'_> {
             settings: Arc::new(self.case.settings.clone()),
             state: state.cloned(),
         };
-        let (answer, wait) = channel();
-        let asked = self.send.send(Event::Step(Box::new(step), answer));
-        let goes_on = asked.is_ok() && wait.recv().unwrap_or(false) && !self.stop.load(Ordering::Relaxed);
+        let goes_on = ask(&self.send, step) && !self.stop.load(Ordering::Relaxed);
         if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }

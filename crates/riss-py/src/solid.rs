@@ -1,13 +1,14 @@
 //! Solids in space: cases, and what a run leaves behind.
 
 use crate::error;
+use crate::step::{AnyState, State};
 use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyKeyError};
 use pyo3::prelude::*;
-use riss::analysis::{OpenedCrack, SolidResult};
+use riss::analysis::{GrowthEnd, LoadPoint, OpenedCrack, SolidGrowthState, SolidResult};
 use riss::case::AnyCase;
 use riss::math::Vector3;
-use riss::output::SolidResults;
+use riss::output::solid_results::SolidStepResults;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -60,6 +61,18 @@ impl SolidCase {
         self.case.overrides.clone()
     }
 
+    /// Number of steps after the first, if cracks grow.
+    #[getter]
+    fn growth_steps(&self) -> Option<usize> {
+        self.case.growth.as_ref().map(|g| g.steps)
+    }
+
+    /// Whether cohesive cracks are loaded; nobody knows in how many steps.
+    #[getter]
+    fn is_loaded(&self) -> bool {
+        self.case.loading.is_some()
+    }
+
     /// What the author should know, although the case is valid.
     #[getter]
     fn notes(&self) -> Vec<String> {
@@ -76,20 +89,46 @@ impl SolidCase {
     }
 }
 
-/// What a run of a solid found.
+/// A solved solid: the only state of a static run, a step of growth, a state of loading.
 #[pyclass(frozen, module = "riss._riss")]
-pub struct Solid {
+pub struct SolidStep {
     /// Everything that was found.
     pub result: SolidResult,
-    /// The record as it stands in `results.json`.
-    pub record: SolidResults,
+    /// The record as it stands among the steps of `results.json`.
+    pub record: SolidStepResults,
+    /// Vertices and triangles of each crack.
+    pub surfaces: Vec<(Vec<Vector3>, Vec<[u32; 3]>)>,
+    /// Traction between the faces of each crack, where they are loaded.
+    pub tractions: Vec<Vec<f64>>,
+    /// Point of the load curve, where cohesive cracks are loaded.
+    pub point: Option<LoadPoint>,
+    /// From where the step can be repeated, in growth.
+    pub state: Option<SolidGrowthState>,
+    /// Why growth ends with this step.
+    pub end: Option<GrowthEnd>,
 }
 
 #[pymethods]
-impl Solid {
+impl SolidStep {
     /// The record, as JSON.
     fn record_json(&self) -> PyResult<String> {
         serde_json::to_string(&self.record).map_err(error::of_text)
+    }
+
+    /// The point of the load curve, as JSON.
+    #[getter]
+    fn point_json(&self) -> PyResult<Option<String>> {
+        self.point.as_ref().map(|p| serde_json::to_string(p).map_err(error::of_text)).transpose()
+    }
+
+    #[getter]
+    fn end_json(&self) -> PyResult<Option<String>> {
+        self.end.as_ref().map(|e| serde_json::to_string(e).map_err(error::of_text)).transpose()
+    }
+
+    #[getter]
+    fn state(&self) -> Option<State> {
+        self.state.clone().map(|s| State { state: AnyState::Solid(s) })
     }
 
     /// A vector at every node, shape (n, 3).
@@ -116,15 +155,38 @@ impl Solid {
 
     /// Triangles between the points of a crack, shape (n, 3).
     fn crack_triangles<'py>(&self, py: Python<'py>, crack: usize) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let triangles = &self.opened(crack)?.triangles;
-        PyArray1::from_vec(py, triangles.iter().flatten().copied().collect()).reshape([triangles.len(), 3])
+        corners(py, &self.opened(crack)?.triangles)
+    }
+
+    /// Traction that pulls the faces of a cohesive crack together at its points, shape (n,); empty without loading.
+    fn traction<'py>(&self, py: Python<'py>, crack: usize) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.tractions.get(crack).cloned().unwrap_or_default())
+    }
+
+    /// Vertices of a crack, shape (n, 3), and its triangles, shape (m, 3).
+    #[allow(clippy::type_complexity)]
+    fn surface<'py>(
+        &self,
+        py: Python<'py>,
+        crack: usize,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>)> {
+        let (vertices, triangles) = self.surfaces.get(crack).ok_or_else(no_crack)?;
+        Ok((triples(py, vertices)?, corners(py, triangles)?))
     }
 }
 
-impl Solid {
+impl SolidStep {
     fn opened(&self, crack: usize) -> PyResult<&OpenedCrack> {
-        self.result.opened_cracks.get(crack).ok_or_else(|| PyIndexError::new_err("there is no such crack"))
+        self.result.opened_cracks.get(crack).ok_or_else(no_crack)
     }
+}
+
+fn no_crack() -> PyErr {
+    PyIndexError::new_err("there is no such crack")
+}
+
+fn corners<'py>(py: Python<'py>, triangles: &[[u32; 3]]) -> PyResult<Bound<'py, PyArray2<u32>>> {
+    PyArray1::from_vec(py, triangles.iter().flatten().copied().collect()).reshape([triangles.len(), 3])
 }
 
 fn triples<'py>(py: Python<'py>, vectors: &[Vector3]) -> PyResult<Bound<'py, PyArray2<f64>>> {

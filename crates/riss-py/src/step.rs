@@ -3,9 +3,9 @@
 use crate::approximation::Approximation;
 use crate::error;
 use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
-use pyo3::exceptions::{PyIndexError, PyKeyError};
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use riss::analysis::{GrowthState, Settings, StaticResult};
+use riss::analysis::{GrowthState, Settings, SolidGrowthState, StaticResult};
 use riss::math::{Matrix2, Vector2};
 use riss::model::Model;
 use riss::output::results::StepResults;
@@ -31,23 +31,66 @@ pub struct Step {
 #[pyclass(frozen, module = "riss._riss")]
 pub struct State {
     /// What Rust knows.
-    pub state: GrowthState,
+    pub state: AnyState,
+}
+
+/// A state of any method.
+pub enum AnyState {
+    /// Of a body in the plane.
+    Plane(GrowthState),
+    /// Of a solid.
+    Solid(SolidGrowthState),
 }
 
 #[pymethods]
 impl State {
     #[getter]
     fn step(&self) -> usize {
-        self.state.step
+        match &self.state {
+            AnyState::Plane(state) => state.step,
+            AnyState::Solid(state) => state.step,
+        }
     }
 
     fn to_json(&self) -> PyResult<String> {
-        serde_json::to_string(&self.state).map_err(error::of_text)
+        match &self.state {
+            AnyState::Plane(state) => serde_json::to_string(state),
+            AnyState::Solid(state) => serde_json::to_string(state),
+        }
+        .map_err(error::of_text)
     }
 
     #[staticmethod]
     fn from_json(json: &str) -> PyResult<Self> {
-        serde_json::from_str(json).map(|state| Self { state }).map_err(error::of_text)
+        match serde_json::from_str(json) {
+            Ok(state) => Ok(Self { state: AnyState::Solid(state) }),
+            Err(_) => serde_json::from_str(json).map(|s| Self { state: AnyState::Plane(s) }).map_err(error::of_text),
+        }
+    }
+}
+
+impl State {
+    /// That of a body in the plane.
+    pub fn plane(&self) -> PyResult<GrowthState> {
+        match &self.state {
+            AnyState::Plane(state) => Ok(state.clone()),
+            AnyState::Solid(_) => {
+                Err(PyValueError::new_err("`start` is a state of a solid, the case one of the plane"))
+            }
+        }
+    }
+
+    /// That of a solid with so many cracks.
+    pub fn solid(&self, n_cracks: usize) -> PyResult<SolidGrowthState> {
+        match &self.state {
+            AnyState::Solid(state) if state.sources.iter().any(|s| *s >= n_cracks) => {
+                Err(PyValueError::new_err(format!("`start` goes on with more cracks than the {n_cracks} of the case")))
+            }
+            AnyState::Solid(state) => Ok(state.clone()),
+            AnyState::Plane(_) => {
+                Err(PyValueError::new_err("`start` is a state of the plane, the case one of a solid"))
+            }
+        }
     }
 }
 
@@ -65,7 +108,7 @@ impl Step {
 
     #[getter]
     fn state(&self) -> Option<State> {
-        self.state.clone().map(|state| State { state })
+        self.state.clone().map(|s| State { state: AnyState::Plane(s) })
     }
 
     #[getter]
@@ -164,5 +207,10 @@ pub fn history_csv(steps: Vec<PyRef<'_, Step>>) -> PyResult<String> {
 /// The state in a folder of results from which a step can be repeated.
 #[pyfunction]
 pub fn restart_state(dir: PathBuf, step: usize) -> PyResult<State> {
-    riss::output::restart_state(&dir, step).map(|state| State { state }).map_err(|e| error::of_files(&dir, &e))
+    match riss::output::solid_restart_state(&dir, step) {
+        Ok(state) => Ok(State { state: AnyState::Solid(state) }),
+        Err(_) => riss::output::restart_state(&dir, step)
+            .map(|s| State { state: AnyState::Plane(s) })
+            .map_err(|e| error::of_files(&dir, &e)),
+    }
 }

@@ -91,6 +91,12 @@ pub enum Error {
         /// What is wrong with the geometry or the request.
         reason: String,
     },
+    /// A load curve has no end.
+    #[error("the load curve breaks off: {reason}")]
+    LoadCurve {
+        /// Why.
+        reason: String,
+    },
     /// No integration domain fits around a tip.
     #[error("no integration domain fits around the crack tip at ({}, {}): {reason}", tip.x, tip.y)]
     NoTipDomain {

@@ -21,7 +21,7 @@ from . import plot
 from ._riss import AnalysisError, CaseError, __version__
 from .case import Case, SolidCase, read, schema
 from .results import Run, State, Step
-from .solid import SolidRun
+from .solid import SolidRun, SolidStep
 
 __all__ = [
     "AnalysisError",
@@ -30,6 +30,7 @@ __all__ = [
     "Run",
     "SolidCase",
     "SolidRun",
+    "SolidStep",
     "State",
     "Step",
     "__version__",

@@ -11,9 +11,10 @@ from . import _riss
 from ._riss import CaseError
 from .progress import Progress
 from .results import Run, State, Step
-from .solid import SolidRun
+from .solid import SolidRun, SolidStep
 
 StepCallback = Callable[[Step], Union[None, bool, "Case"]]
+SolidStepCallback = Callable[[SolidStep], Union[None, bool, "SolidCase"]]
 
 
 def schema(method: str = "element-free-galerkin") -> dict[str, Any]:
@@ -114,7 +115,7 @@ class Case(_Written):
         run = Run()
         case: Optional[Case] = self
         while case is not None:
-            relay = _Relay(run, on_step)
+            relay = _Relay(run.steps, on_step, Case)
             with Progress(case, progress) as shown:
 
                 def done(step: _riss.Step) -> bool:
@@ -176,21 +177,44 @@ class SolidCase(_Written):
         self,
         *,
         out: Union[None, str, os.PathLike[str]] = None,
+        on_step: Optional[SolidStepCallback] = None,
         progress: Optional[bool] = None,
+        start: Optional[State] = None,
         threads: Optional[int] = None,
     ) -> SolidRun:
-        """Solves the case; the keywords are those of :meth:`Case.run`.
+        """Runs the case to its end; the keywords are those of :meth:`Case.run`.
 
-        After Ctrl-C nothing is written, and the run ends when the solver does; a second one does not wait.
+        ``on_step`` gets each :class:`SolidStep`. Where cracks grow, ``False`` ends the run there, and a
+        :class:`SolidCase` with as many cracks takes over from the next step on, with the cracks as they have grown.
+        Under load, the curve is followed first; ``False`` then wants no more of its states with fields.
 
-        Raises :class:`AnalysisError` if the case cannot be solved.
+        Ctrl-C ends growth after the step at hand; what was written is complete. Other runs end without a result. A
+        second one does not wait.
+
+        Raises :class:`AnalysisError` if the first step cannot be solved. A later one that cannot ends the growth, and
+        ``SolidRun.end`` says why.
         """
-        warnings: list[str] = []
-        folder = None if out is None else Path(out)
-        with Progress(self, progress) as shown:
-            solid = _riss.run_solid(self._case, folder, threads, shown.stage, warnings.append)
-            shown.step()
-        return SolidRun(solid, warnings)
+        run = SolidRun()
+        case: Optional[SolidCase] = self
+        while case is not None:
+            relay = _Relay(run.steps, on_step, SolidCase)
+            with Progress(case, progress) as shown:
+
+                def done(step: _riss.SolidStep) -> bool:
+                    goes_on = relay.step(SolidStep(step))
+                    shown.step()
+                    return goes_on
+
+                state = None if start is None else start._state
+                folder = None if out is None else Path(out)
+                warn = run.warnings.append
+                text = _riss.run_solid(case._case, state, folder, threads, shown.stage, warn, done)
+                run.record = json.loads(text)
+                if folder is None and run.record["steps"]:
+                    # Those of cases that others took over from are known here alone.
+                    run.record["steps"] = [step.record for step in run.steps]
+            case, start = relay.successor, relay.state
+        return run
 
 
 def read(path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = None) -> Union[Case, SolidCase]:
@@ -202,21 +226,24 @@ def read(path: Union[str, os.PathLike[str]], set: Optional[Mapping[str, Any]] = 
 class _Relay:
     """Keeps steps, and what the callback wants."""
 
-    def __init__(self, run: Run, on_step: Optional[StepCallback]) -> None:
-        self.run = run
+    def __init__(self, steps: list[Any], on_step: Optional[Callable[[Any], Any]], kind: type) -> None:
+        self.steps = steps
         self.on_step = on_step
-        self.wanted: Optional[Case] = None
-        self.successor: Optional[Case] = None
+        self.kind = kind
+        self.wanted: Any = None
+        self.successor: Any = None
         self.state: Optional[State] = None
 
-    def step(self, step: Step) -> bool:
+    def step(self, step: Any) -> bool:
         if self.wanted is not None:
             # The step after the change: its cracks stand, all else is for the other case to find.
             self.successor, self.state = self.wanted, step.state
             return False
-        self.run.steps.append(step)
+        self.steps.append(step)
         answer = self.on_step(step) if self.on_step is not None else None
-        if isinstance(answer, Case):
+        if isinstance(answer, self.kind):
+            if step.state is None:
+                raise ValueError("no other case can take over: the cracks of this one do not grow")
             self.wanted = answer
         return answer is not False
 

@@ -8,8 +8,10 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
 
     from .results import Run, Step
+    from .solid import SolidRun, SolidStep
 
 #: Components of vectors and tensors by name.
 _COMPONENTS = {
@@ -91,6 +93,61 @@ def history(run: Run, y: Any = ("K_I", "K_II"), x: str = "a", ax: Optional[Axes]
                 ax.fill_between(rows[x], rows[name] - bar, rows[name] + bar, color=line.get_color(), alpha=0.3, lw=0)
     ax.set_xlabel(x)
     ax.legend()
+    return ax
+
+
+def front(
+    of: Union[SolidRun, SolidStep],
+    index: int = 0,
+    y: Any = ("K_I", "K_II", "K_III"),
+    ax: Optional[Axes] = None,
+    **style: Any,
+) -> Axes:
+    """Columns of :meth:`SolidStep.front` over the length along a front; factors with their uncertainty as a band."""
+    ax = _axes(ax)
+    columns = of.front(index)
+    bars = {"T": "T_uncertainty", "J": "J_uncertainty", **dict.fromkeys(["K_I", "K_II", "K_III"], "K_uncertainty")}
+    for name in [y] if isinstance(y, str) else y:
+        (line,) = ax.plot(columns["s"], columns[name], **{"label": name, "marker": ".", **style})
+        if name in bars:
+            low, high = columns[name] - columns[bars[name]], columns[name] + columns[bars[name]]
+            ax.fill_between(columns["s"], low, high, color=line.get_color(), alpha=0.3, lw=0)
+    ax.set_xlabel("s")
+    ax.legend()
+    return ax
+
+
+def load_curve(run: SolidRun, ax: Optional[Axes] = None, **style: Any) -> Axes:
+    """Load over displacement of cohesive cracks, with the states that have fields as dots."""
+    ax = _axes(ax)
+    curve = run.load_curve
+    if not curve:
+        raise ValueError("the run has no load curve: no crack is cohesive")
+    (line,) = ax.plot(curve["displacement"], curve["load"], **style)
+    shown = [step.number for step in run.steps]
+    ax.plot(curve["displacement"][shown], curve["load"][shown], "o", ms=4, color=line.get_color())
+    ax.set_xlabel("displacement")
+    ax.set_ylabel("load")
+    return ax
+
+
+def surface(
+    of: Union[SolidRun, SolidStep], crack: Union[int, str] = 0, ax: Optional[Axes3D] = None, **style: Any
+) -> Axes3D:
+    """A crack of a solid as a surface in space, with its fronts."""
+    import matplotlib.pyplot as plt
+
+    if ax is None:
+        ax = plt.figure().add_subplot(projection="3d")
+    vertices, triangles = of.surface(crack)
+    x, y, z = vertices.T
+    ax.plot_trisurf(x, y, z, triangles=triangles, **{"alpha": 0.7, "linewidth": 0.2, "edgecolor": "gray", **style})
+    for line in of.fronts:
+        points = np.array([p["position"] for p in line["points"]])
+        if line["closed"]:
+            points = np.vstack([points, points[:1]])
+        ax.plot(*points.T, color="tab:red")
+    ax.set_aspect("equal")
     return ax
 
 

@@ -22,8 +22,10 @@ class Progress:
             if shows:
                 raise ImportError("a progress bar needs tqdm: pip install 'riss[progress]'") from None
             return
-        growth_steps = getattr(case._case, "growth_steps", None)
-        total = 1 if growth_steps is None else growth_steps + 1
+        growth_steps = case._case.growth_steps
+        total: Optional[int] = 1 if growth_steps is None else growth_steps + 1
+        if getattr(case._case, "is_loaded", False):
+            total = None
         self._bar = tqdm(total=total, desc=case.title, unit="step")
 
     def __enter__(self) -> Progress:

@@ -106,21 +106,31 @@ fn keep_known_in_all(levels: &mut [Level]) {
 
 /// Fits `v + c h^p` to values at spacings `h`; the order with the least squared residual counts.
 pub fn limit(values: &[(f64, f64)]) -> Option<Limit> {
-    let n = values.len();
-    if n < 3 {
+    limits(&[values.to_vec()]).map(|l| l[0])
+}
+
+/// The same for several values that share one order; none without values, or if one of them has less than three.
+pub fn limits(series: &[Vec<(f64, f64)>]) -> Option<Vec<Limit>> {
+    if series.is_empty() || series.iter().any(|values| values.len() < 3) {
         return None;
     }
     let steps = ((ORDERS[1] - ORDERS[0]) * 100.0) as usize;
-    let fits = (0..=steps).map(|k| {
-        let order = ORDERS[0] + 0.01 * k as f64;
-        let (value, slope) = line(values.iter().map(|(h, v)| (h.powf(order), *v)));
-        let residual = values.iter().map(|(h, v)| (value + slope * h.powf(order) - v).powi(2)).sum::<f64>();
-        (order, value, residual)
-    });
-    let (order, value, residual) = fits.min_by(|a, b| a.2.total_cmp(&b.2))?;
-    let finest = values.iter().min_by(|a, b| a.0.total_cmp(&b.0))?.1;
-    let scatter = (residual / (n - 2) as f64).sqrt();
-    Some(Limit { value, uncertainty: SAFETY * (finest - value).abs() + scatter, order })
+    let orders = (0..=steps).map(|k| ORDERS[0] + 0.01 * k as f64);
+    let residual = |order: f64| series.iter().map(|values| fit(values, order).1).sum::<f64>();
+    let (order, _) = orders.map(|order| (order, residual(order))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let limit = |values: &Vec<(f64, f64)>| {
+        let (value, residual) = fit(values, order);
+        let finest = values.iter().min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+        let scatter = (residual / (values.len() - 2) as f64).sqrt();
+        Some(Limit { value, uncertainty: SAFETY * (finest - value).abs() + scatter, order })
+    };
+    series.iter().map(limit).collect()
+}
+
+/// Value at zero of the fit with an order, and the squared residual.
+fn fit(values: &[(f64, f64)], order: f64) -> (f64, f64) {
+    let (value, slope) = line(values.iter().map(|(h, v)| (h.powf(order), *v)));
+    (value, values.iter().map(|(h, v)| (value + slope * h.powf(order) - v).powi(2)).sum())
 }
 
 /// Value at zero and slope of the line of least squares.

@@ -2,6 +2,7 @@
 
 use super::svg::{LineEnd, Svg};
 use super::whole_file::write_whole;
+use crate::analysis::convergence::StudiedTip;
 use crate::analysis::{ConvergenceStudy, Limit};
 use crate::crack::End;
 use crate::geometry::aabb::Aabb;
@@ -11,7 +12,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Names of the two files.
-const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
+pub(super) const FILES: [&str; 2] = ["convergence.csv", "convergence.svg"];
 /// Colors of the tips, in turn; none is told from another by hue alone.
 const COLORS: [&str; 6] = ["#1b6ca8", "#c8553d", "#2e7d4f", "#7a4ea3", "#8a6d1b", "#444444"];
 /// Smallest distance that is drawn, over the value.
@@ -62,16 +63,29 @@ fn distances(study: &ConvergenceStudy, tip: usize) -> Option<Vec<(f64, f64)>> {
     let [k1, k2]: [Limit; 2] = [study.limits[tip][0]?, study.limits[tip][1]?];
     let size = k1.value.hypot(k2.value);
     let distance = |factors: [f64; 2]| (factors[0] - k1.value).hypot(factors[1] - k2.value) / size;
-    Some(study.levels.iter().map(|l| (l.n_nodes as f64, distance(l.tips[tip].factors).max(FLOOR))).collect())
+    Some(study.levels.iter().map(|l| (l.n_nodes as f64, distance(l.tips[tip].factors))).collect())
+}
+
+fn picture(study: &ConvergenceStudy) -> String {
+    let tips = study.levels.first().map_or(&[][..], |l| &l.tips);
+    let name = |tip: &StudiedTip| format!("{} {}", tip.crack, end_name(tip.end));
+    let line =
+        |(k, tip): (usize, &StudiedTip)| Line { name: name(tip), points: distances(study, k).unwrap_or_default() };
+    chart("distance of K to its limit", &tips.iter().enumerate().map(line).collect::<Vec<_>>())
+}
+
+/// Distances to a limit, over the numbers of nodes.
+pub(super) struct Line {
+    /// What goes there.
+    pub name: String,
+    /// Nodes, and the distance over the size of the limit.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// Both axes are logarithmic, one decade is as long along both.
-fn picture(study: &ConvergenceStudy) -> String {
-    let n_tips = study.levels.first().map_or(0, |l| l.tips.len());
-    let lines: Vec<Vec<Vector2>> = (0..n_tips)
-        .map(|tip| distances(study, tip).unwrap_or_default())
-        .map(|line| line.iter().map(|(n, d)| Vector2::new(n.log10(), d.log10())).collect())
-        .collect();
+pub(super) fn chart(title: &str, all_lines: &[Line]) -> String {
+    let decimal = |(n, d): &(f64, f64)| Vector2::new(n.log10(), d.max(FLOOR).log10());
+    let lines: Vec<Vec<Vector2>> = all_lines.iter().map(|l| l.points.iter().map(decimal).collect()).collect();
     let all = || lines.iter().flatten().copied();
     let bounds = match all().count() {
         0 => Aabb { lower: Vector2::new(2.0, -4.0), upper: Vector2::new(4.0, -2.0) },
@@ -95,17 +109,16 @@ fn picture(study: &ConvergenceStudy) -> String {
     }
     let (width, height) = svg.size();
     svg.text((width / 2.0, height - 20.0), "text-anchor=\"middle\"", "nodes");
-    svg.text((140.0, 30.0), "", "distance of K to its limit");
+    svg.text((140.0, 30.0), "", title);
     for (k, line) in lines.iter().enumerate().filter(|(_, l)| !l.is_empty()) {
         let color = COLORS[k % COLORS.len()];
         let pixels: Vec<_> = line.iter().map(|p| view.pixel(*p)).collect();
         let dots = pixels.iter().map(|p| vec![*p]).collect::<Vec<_>>();
         svg.paths([pixels], LineEnd::Open, &format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"20\""));
         svg.paths(dots, LineEnd::Open, &format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"80\""));
-        let tip = &study.levels[0].tips[k];
         let at = (width - 70.0, 30.0 + 20.0 * k as f64);
         let style = format!("text-anchor=\"end\" fill=\"{color}\"");
-        svg.text(at, &style, &format!("{} {}", tip.crack, end_name(tip.end)));
+        svg.text(at, &style, &all_lines[k].name);
     }
     svg.finish()
 }
@@ -113,7 +126,7 @@ fn picture(study: &ConvergenceStudy) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::convergence::{Level, StudiedTip, limit};
+    use crate::analysis::convergence::{Level, limit};
 
     fn study() -> ConvergenceStudy {
         let values = [2.0, 1.0, 0.5].map(|h: f64| (h, 10.0 - 0.1 * h));

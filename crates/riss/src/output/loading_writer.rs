@@ -1,6 +1,7 @@
 //! Writes what a solid with cohesive cracks does under load: the states with fields as they come, then curve and results.
 
 use super::report::REPORT_FILE;
+use super::report::solid_scene::{Scenes, clear_scenes, scene_files, write_scene};
 use super::solid_files::{cracks_with, nodes};
 use super::solid_report::solid_report;
 use super::solid_results::{LoadCurvePoint, SolidResults};
@@ -34,6 +35,7 @@ impl LoadingWriter {
             Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
             _ => {}
         }
+        clear_scenes(dir, 0)?;
         Ok(Self { dir: dir.into(), steps: vec![], at_peak: None })
     }
 
@@ -42,6 +44,7 @@ impl LoadingWriter {
     /// # Errors
     /// What the system says.
     pub fn write_step(&mut self, step: &LoadingStep) -> io::Result<()> {
+        write_scene(&self.dir, step.point, &step.model, &step.result)?;
         write_whole(&self.dir.join(file_name("nodes", step.point)), &nodes(&step.result))?;
         let surfaces = cracks_with(&step.result, Some(&step.tractions));
         write_whole(&self.dir.join(file_name("cracks", step.point)), &surfaces)?;
@@ -72,8 +75,10 @@ impl LoadingWriter {
         files.push((LOAD_CURVE_FILE.into(), table(&results.load_curve)?));
         let kinds = ["nodes", "cracks"].into_iter();
         results.files = kinds.flat_map(|kind| self.steps.iter().map(move |s| file_name(kind, *s))).collect();
-        results.files.extend(files.iter().map(|f| f.0.clone()).chain([REPORT_FILE.to_string()]));
-        files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
+        results
+            .files
+            .extend(files.iter().map(|f| f.0.clone()).chain(scene_files(&self.dir)).chain([REPORT_FILE.to_string()]));
+        files.push((REPORT_FILE.into(), solid_report(&results, &Scenes::read(&self.dir)?).into_bytes()));
         files.push((RESULTS_FILE.into(), (serde_json::to_string_pretty(&results)? + "\n").into_bytes()));
         write_all(&self.dir, &files)
     }

@@ -4,7 +4,8 @@
 //! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
-//! [`solid_writer`] (step by step), [`loading_writer`] (of cohesive cracks), [`solid_report`], [`solid_picture()`].
+//! [`solid_writer`] (step by step), [`loading_writer`] (of cohesive cracks), [`solid_report`], [`solid_picture()`],
+//! [`solid_comparison`], [`solid_convergence`], [`solid_exports`].
 
 mod color_map;
 pub mod comparison;
@@ -21,6 +22,9 @@ pub mod results;
 pub mod run_table;
 pub mod run_writer;
 pub mod shape_picture;
+pub mod solid_comparison;
+pub mod solid_convergence;
+pub mod solid_exports;
 pub mod solid_files;
 pub mod solid_picture;
 pub mod solid_report;
@@ -39,7 +43,9 @@ pub use report::{REPORT_FILE, RunSource, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;
-pub use solid_files::{write_solid_cloud, write_solid_results};
+pub use solid_comparison::SolidComparison;
+pub use solid_convergence::write_solid_convergence;
+pub use solid_files::{AnyResults, read_any_results, write_solid_cloud, write_solid_results};
 pub use solid_picture::solid_picture;
 pub use solid_results::{SolidResults, solid_results_schema};
 pub use solid_writer::{SolidWriter, solid_restart_state};

@@ -1,6 +1,8 @@
 //! Files of a solid: its nodes with their fields, its cracks with their opening, its results.
 
 use super::report::REPORT_FILE;
+use super::report::solid_scene::{Scenes, clear_scenes, write_scene};
+use super::results::Results;
 use super::solid_report::solid_report;
 use super::solid_results::SolidResults;
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
@@ -12,6 +14,9 @@ use crate::model::SolidModel;
 use crate::nodes::cloud::{Cloud, Place, SurfaceId};
 use std::io;
 use std::path::{Path, PathBuf};
+
+/// Name of the method of solids.
+const COLLOCATION: &str = "collocation";
 
 /// Writes the nodes alone, for ParaView; returns the path.
 ///
@@ -44,9 +49,11 @@ pub fn write_solid_results(
         files.push(("cracks-0000.vtu".into(), cracks(result)));
         files.push(("cracks.pvd".into(), collection(&[(0, "cracks-0000.vtu".into())])));
     }
-    let names = files.iter().map(|f| f.0.clone()).chain([REPORT_FILE.into()]).collect();
+    clear_scenes(dir, 0)?;
+    let scenes = write_scene(dir, 0, model, result)?;
+    let names = files.iter().map(|f| f.0.clone()).chain(scenes).chain([REPORT_FILE.into()]).collect();
     let results = SolidResults::new(model, info, result, names);
-    files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
+    files.push((REPORT_FILE.into(), solid_report(&results, &Scenes::read(dir)?).into_bytes()));
     let mut text = serde_json::to_string_pretty(&results)?;
     text.push('\n');
     files.push((RESULTS_FILE.into(), text.into_bytes()));
@@ -56,6 +63,28 @@ pub fn write_solid_results(
 /// The results in a folder, if they are those of a solid.
 pub fn read_solid_results(dir: &Path) -> Option<SolidResults> {
     serde_json::from_str(&std::fs::read_to_string(dir.join(RESULTS_FILE)).ok()?).ok()
+}
+
+/// The results of a run of any method.
+#[derive(Clone, Debug)]
+pub enum AnyResults {
+    /// Of a body in the plane.
+    Plane(Box<Results>),
+    /// Of a solid.
+    Solid(Box<SolidResults>),
+}
+
+/// The results in a folder, whichever they are.
+///
+/// # Errors
+/// What the system says; `InvalidData` if the file is none of ours.
+pub fn read_any_results(dir: &Path) -> io::Result<AnyResults> {
+    let text = std::fs::read_to_string(dir.join(RESULTS_FILE))?;
+    let value: serde_json::Value = serde_json::from_str(&text)?;
+    Ok(match value["method"].as_str() {
+        Some(COLLOCATION) => AnyResults::Solid(Box::new(serde_json::from_value(value)?)),
+        Some(_) | None => AnyResults::Plane(Box::new(serde_json::from_value(value)?)),
+    })
 }
 
 fn vertices(n: usize) -> Cells {

@@ -1,8 +1,11 @@
-//! `report.html` of a solid: factors and T-stress along every front as curves and tables, without scripts or a network.
+//! `report.html` of a solid: its cracks in space, factors and T-stress along every front as curves and tables, without a network.
+//! Without scripts all but the view in space is there.
 //!
 //! What the user wrote is escaped, always.
 
-use super::report::html;
+use super::color_map::viridis;
+use super::report::solid_scene::Scenes;
+use super::report::{SOLID_SCRIPT, html, push_data};
 use super::solid_results::{FrontPointResults, FrontResults, LoadCurvePoint, SolidResults};
 use std::fmt::Write;
 
@@ -20,6 +23,10 @@ svg { width: 100%; height: auto; } svg text { fill: var(--text); font-size: 12px
 svg .grid { stroke: var(--line); stroke-width: 1; } svg .line { fill: none; stroke-width: 2; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 14px; }
 th, td { padding: 3px 14px 3px 0; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+canvas { width: 100%; aspect-ratio: 1 / 0.62; touch-action: none; cursor: grab; border: 1px solid var(--line); border-radius: 6px; }
+.controls { display: flex; flex-wrap: wrap; gap: 8px 20px; align-items: center; margin-top: 8px; }
+.controls input { vertical-align: middle; } .scale { display: inline-block; width: 90px; height: 10px; }
+@media print { .controls, #view-status { display: none; } section { break-inside: avoid; } }
 th { color: var(--quiet); } th:first-child, td:first-child { text-align: left; }
 ";
 
@@ -50,8 +57,8 @@ const FACTORS: [Series; 3] = [
 ];
 const T_STRESS: [Series; 1] = [Series { name: "T", value: |p| p.t_stress, bar: |p| p.t_uncertainty }];
 
-/// The page for the results of a solid.
-pub fn solid_report(results: &SolidResults) -> String {
+/// The page for the results of a solid, with what is drawn of its steps.
+pub fn solid_report(results: &SolidResults, scenes: &Scenes) -> String {
     let title = html(&results.case);
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
@@ -60,6 +67,7 @@ pub fn solid_report(results: &SolidResults) -> String {
         html(&summary(results))
     );
     push_warnings(&mut page, results);
+    push_view(&mut page, scenes);
     push_growth(&mut page, results);
     push_loading(&mut page, results);
     for (index, front) in results.fronts.iter().enumerate() {
@@ -67,15 +75,59 @@ pub fn solid_report(results: &SolidResults) -> String {
     }
     push_cracks(&mut page, results);
     push_stages(&mut page, results);
+    push_script(&mut page, results, scenes);
     page
+}
+
+/// Colors of the opening.
+const N_COLORS: usize = 32;
+
+fn push_view(page: &mut String, scenes: &Scenes) {
+    if scenes.is_empty() {
+        return;
+    }
+    let stops: Vec<String> = (0..5).map(|k| viridis(k as f64 / 4.0)).collect();
+    let _ = write!(
+        page,
+        "<section>\n<h2>Cracks</h2>\n\
+         <canvas id=\"view-canvas\" width=\"1000\" height=\"620\" tabindex=\"0\" role=\"img\" \
+         aria-label=\"the cracks in the body; arrow keys turn it, + and - zoom, 0 resets\"></canvas>\n\
+         <p class=\"quiet\" id=\"view-status\" aria-live=\"polite\">drag to turn, shift and drag to move, scroll to zoom; values \
+         are shown under the cursor</p>\n\
+         <div class=\"controls\"><span id=\"view-steps\"><button type=\"button\" id=\"view-play\">play</button> \
+         <label>step <input type=\"range\" id=\"view-step\" min=\"0\" max=\"0\" step=\"1\" value=\"0\"></label></span> \
+         <span id=\"view-label\"></span>\n\
+         <label>opening drawn <input type=\"range\" id=\"view-opening\" min=\"0\" max=\"4\" step=\"0.1\" value=\"1\"></label>\n\
+         <span><span class=\"scale\" style=\"background: linear-gradient(90deg, {})\"></span> <span id=\"view-legend\"></span></span>\n\
+         <button type=\"button\" id=\"view-reset\">reset</button> \
+         <button type=\"button\" id=\"view-whole\">whole body</button></div>\n</section>\n",
+        stops.join(", ")
+    );
+}
+
+fn push_script(page: &mut String, results: &SolidResults, scenes: &Scenes) {
+    if scenes.is_empty() {
+        return;
+    }
+    let colors: Vec<String> = (0..N_COLORS).map(|k| viridis(k as f64 / (N_COLORS - 1) as f64)).collect();
+    let unit = |name: String| format!(" {name}");
+    let length = results.units.as_ref().map_or(String::new(), |u| unit(u.length.clone()));
+    let factor = results.units.as_ref().map_or(String::new(), |u| unit(u.stress_intensity()));
+    let view = serde_json::json!({ "colors": colors, "lengthUnit": length, "factorUnit": factor });
+    push_data(page, "view", &view.to_string());
+    push_data(page, "scenes", &scenes.json(results));
+    let _ = write!(page, "<script>\n{SOLID_SCRIPT}</script>\n");
 }
 
 fn summary(results: &SolidResults) -> String {
     let time = results.wall_time_s.map_or(String::new(), |t| format!(", {t:.1} s"));
     let memory = results.peak_memory_bytes.map_or(String::new(), |b| format!(", {:.1} GB", b as f64 / 1e9));
     let solver = &results.solver;
+    let units = results.units.as_ref().map_or(String::new(), |u| {
+        format!("; in {}, {}, {}, K in {}", u.length, u.force, u.stress, u.stress_intensity())
+    });
     format!(
-        "riss {}, {}: {} nodes, {} unknowns{time}{memory}; {} with {} products",
+        "riss {}, {}: {} nodes, {} unknowns{time}{memory}; {} with {} products{units}",
         results.riss, results.method, results.nodes, results.unknowns, solver.method, solver.iterations
     )
 }

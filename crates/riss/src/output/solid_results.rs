@@ -4,7 +4,7 @@
 
 use super::{RunInfo, RunStatus};
 use crate::analysis::{FrontPointRecord, FrontRecord, GrowthEnd, LoadPoint, LoadingRecord, SolidResult, SolidStep};
-use crate::model::SolidModel;
+use crate::model::{SolidModel, UnitNames};
 use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -21,6 +21,9 @@ pub struct SolidResults {
     pub case: String,
     /// Name of the method.
     pub method: String,
+    /// Units of all values, if the case says them.
+    #[serde(default)]
+    pub units: Option<UnitNames>,
     /// How the run ended.
     pub status: RunStatus,
     /// Number of nodes.
@@ -273,6 +276,7 @@ impl SolidResults {
             riss: env!("CARGO_PKG_VERSION").into(),
             case: info.title.clone(),
             method: info.method.clone(),
+            units: info.units.clone(),
             status: info.status,
             nodes: result.n_nodes,
             unknowns: 3 * result.n_nodes,
@@ -298,7 +302,7 @@ impl SolidResults {
     }
 
     /// Adds how the cracks were loaded.
-    pub(super) fn loaded(&mut self, record: &LoadingRecord) {
+    pub fn loaded(&mut self, record: &LoadingRecord) {
         let points = record.curve.iter().enumerate().map(|(step, p)| LoadCurvePoint::new(step, p));
         self.load_curve = points.collect();
         let last = self.load_curve.last();
@@ -312,7 +316,7 @@ impl SolidResults {
     }
 
     /// Adds how the cracks grew.
-    pub(super) fn grown(&mut self, steps: Vec<SolidStepResults>, end: Option<GrowthEnd>) {
+    pub fn grown(&mut self, steps: Vec<SolidStepResults>, end: Option<GrowthEnd>) {
         self.crack_area = steps.last().and_then(|s| s.cracks.iter().map(|c| c.area).sum());
         (self.growth_end, self.steps) = (end, steps);
     }

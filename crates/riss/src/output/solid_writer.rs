@@ -1,6 +1,7 @@
 //! Writes growth in a solid step by step: after each step the folder is complete, whatever happens next.
 
 use super::report::REPORT_FILE;
+use super::report::solid_scene::{Scenes, clear_scenes, scene_files, write_scene};
 use super::run_writer::{RESTART_FOLDER, restart_name};
 use super::solid_files::{cracks, nodes, read_solid_results};
 use super::solid_report::solid_report;
@@ -33,6 +34,7 @@ impl SolidWriter {
         fs::create_dir_all(dir.join(RESTART_FOLDER))?;
         remove(&dir.join(RESULTS_FILE))?;
         remove_from(dir, 0)?;
+        clear_scenes(dir, 0)?;
         Ok(Self { dir: dir.into(), steps: vec![] })
     }
 
@@ -48,6 +50,7 @@ impl SolidWriter {
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
         remove_from(dir, first + 1)?;
+        clear_scenes(dir, first + 1)?;
         Ok(Self { dir: dir.into(), steps })
     }
 
@@ -77,10 +80,12 @@ impl SolidWriter {
             names.extend(KINDS.map(|kind| file_name(kind, earlier)));
             names.push(restart_name(earlier));
         }
+        write_scene(&self.dir, step.step, &step.model, &step.result)?;
+        names.extend(scene_files(&self.dir));
         names.push(REPORT_FILE.into());
         let mut results = SolidResults::new(&step.model, info, &step.result, names);
         results.grown(self.steps.clone(), step.end.clone());
-        files.push((REPORT_FILE.into(), solid_report(&results).into_bytes()));
+        files.push((REPORT_FILE.into(), solid_report(&results, &Scenes::read(&self.dir)?).into_bytes()));
         files.push((RESULTS_FILE.into(), (serde_json::to_string_pretty(&results)? + "\n").into_bytes()));
         write_all(&self.dir, &files)
     }

@@ -152,6 +152,25 @@ pub(super) fn lines(positions: &[Vector2], sizes: &[usize], point_arrays: &[Arra
     text.into_bytes()
 }
 
+/// Triangles in space (`.vtp`).
+pub(super) fn triangles(positions: &[Vector3], corners: &[[u32; 3]], cell_arrays: &[Array]) -> Vec<u8> {
+    let mut text = header("PolyData", " header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\"");
+    let (n_points, n_triangles) = (positions.len(), corners.len());
+    let _ = writeln!(
+        text,
+        "<Piece NumberOfPoints=\"{n_points}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" \
+         NumberOfPolys=\"{n_triangles}\">\n<PointData>\n</PointData>\n<CellData>"
+    );
+    cell_arrays.iter().for_each(|a| a.write(&mut text));
+    text.push_str("</CellData>\n<Points>\n");
+    Array::spatial_vectors("Points", positions.iter().copied()).write(&mut text);
+    text.push_str("</Points>\n<Polys>\n");
+    Array::integers("connectivity", corners.iter().flatten().map(|c| i64::from(*c))).write(&mut text);
+    Array::integers("offsets", ends(&vec![3; n_triangles])).write(&mut text);
+    text.push_str("</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+    text.into_bytes()
+}
+
 /// Where each cell ends in the list of points.
 fn ends(sizes: &[usize]) -> impl Iterator<Item = i64> {
     sizes.iter().scan(0, |end, &size| {

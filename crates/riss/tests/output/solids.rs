@@ -2,6 +2,7 @@
 
 use riss::analysis::{Silent, SolidResult, solid_static};
 use riss::case::{AnyCase, SolidCase};
+use riss::output::report::solid_scene::Scenes;
 use riss::output::solid_report::solid_report;
 use riss::output::{RunInfo, RunStatus, SolidResults, solid_results_schema, write_report, write_solid_results};
 use serde_json::Value;
@@ -48,7 +49,9 @@ fn results_of_solids_come_back_as_they_were() {
     assert_eq!(names, expected);
     let text = std::fs::read_to_string(&files[5]).unwrap();
     let read: SolidResults = serde_json::from_str(&text).unwrap();
-    assert_eq!(read.files, names[..5]);
+    assert_eq!(read.files[..4], names[..4]);
+    assert_eq!(read.files[4..], ["report/body.json", "report/scene_0000.json", "report.html"]);
+    assert!(read.files.iter().all(|name| dir.path().join(name).is_file()));
     assert_eq!(read, SolidResults::new(&case.model, &info(), result, read.files.clone()));
     assert_eq!((read.nodes, read.unknowns), (result.n_nodes, 3 * result.n_nodes));
     assert_eq!(read.stage_time_s["solve"], 0.75);
@@ -101,7 +104,7 @@ fn the_report_of_a_solid_has_its_numbers_and_escapes_names() {
     let mut results = SolidResults::new(&case.model, &info(), result, vec![]);
     results.case = "<b>block</b>".into();
     results.fronts[0].crack = "a & b".into();
-    let page = solid_report(&results);
+    let page = solid_report(&results, &Scenes::default());
     assert!(page.contains("&lt;b&gt;block&lt;/b&gt;") && !page.contains("<b>") && page.contains("a &amp; b"));
     assert!(!page.contains("<script") && !page.contains("http"));
     // Two charts for a front, K_I, K_II, K_III and T at every point that has them.
@@ -109,7 +112,7 @@ fn the_report_of_a_solid_has_its_numbers_and_escapes_names() {
     assert!((4..6).contains(&known), "some points of the small crack have no disc");
     assert_eq!((page.matches("<svg").count(), page.matches("<circle").count()), (4, 4 * known));
     results.fronts[1].points.iter_mut().for_each(|p| (p.k1, p.k2, p.k3, p.t_stress) = (None, None, None, None));
-    assert_eq!(solid_report(&results).matches("<svg").count(), 2);
+    assert_eq!(solid_report(&results, &Scenes::default()).matches("<svg").count(), 2);
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
     let k = format!("<td>{:.4}", results.fronts[0].points[1].k1.unwrap());
     assert!(page.contains(&k), "{k}");
@@ -129,9 +132,9 @@ fn what_the_user_wrote_is_never_markup_in_reports_of_solids() {
     write_solid_results(dir.path(), &model, &info, &result).unwrap();
     let read = |name: &str| std::fs::read_to_string(dir.path().join(name)).unwrap();
     let page = read("report.html");
-    assert!(
-        !page.contains("<img") && !page.contains("</script") && !page.contains("<!--") && !page.contains("onerror=\"")
-    );
+    assert!(!page.contains("<img") && !page.contains("<!--") && !page.contains("onerror=\""));
+    // Those that the page has itself: two blocks of data and one that runs.
+    assert_eq!((page.matches("<script").count(), page.matches("</script").count()), (3, 3));
     // The title twice, the names of fronts and cracks, the warning, and the stage are there as text.
     assert!(page.matches("&lt;img src=x onerror=&quot;alert(1)&quot;&gt;").count() >= 8, "{page}");
     assert_eq!(page.matches("</title>").count(), 1);

@@ -43,7 +43,8 @@ pub(super) struct Growing<'a> {
     state: SolidGrowthState,
     pub model: SolidModel,
     pub surfaces: Vec<GrownSurface>,
-    has_room: bool,
+    /// Why fronts cannot grow any more.
+    pub halt: Option<String>,
 }
 
 impl<'a> Growing<'a> {
@@ -55,7 +56,7 @@ impl<'a> Growing<'a> {
         let state = SolidGrowthState::first(first)?;
         let surfaces = vec![GrownSurface { areas: state.areas(), load_factor: None, strips: 0 }];
         let model = state.model(first)?;
-        Ok(Self { first, growth, state, model, surfaces, has_room: true })
+        Ok(Self { first, growth, state, model, surfaces, halt: None })
     }
 
     /// Settings with nodes as close along cohesive surfaces as at their fronts.
@@ -75,7 +76,7 @@ impl<'a> Growing<'a> {
 
     /// Whether a place lies so near to the front of its crack that the surface has to grow before it opens.
     pub fn is_near_front(&self, crack: usize, place: Vector3) -> bool {
-        self.has_room && self.distance(crack, place) < self.growth.increment
+        self.halt.is_none() && self.distance(crack, place) < self.growth.increment
     }
 
     fn distance(&self, crack: usize, place: Vector3) -> f64 {
@@ -85,7 +86,7 @@ impl<'a> Growing<'a> {
     /// Whether fronts may still grow.
     pub fn may_grow(&self) -> bool {
         let is_cohesive = |c: &usize| self.model.cohesive_crack(*c).is_some();
-        self.has_room
+        self.halt.is_none()
             && (0..self.model.cracks.len()).filter(is_cohesive).any(|c| !self.model.cracks[c].fronts.is_empty())
     }
 
@@ -106,22 +107,30 @@ impl<'a> Growing<'a> {
         let strips = self.surfaces[self.surfaces.len() - 1].strips;
         let largest = self.by_strength(solved, 1.0)?.largest.unwrap_or(0.0);
         let near = NEAR * if place.is_some() { largest.min(law.strength) } else { largest };
+        let mut halt = format!("the largest principal stress ahead of them is {largest:.3e}");
         let (mut n, mut place) = (0, place);
         while largest > 0.0 && n < STRIPS && strips + n < self.growth.steps {
             let drive = self.drive(solved, near, place)?;
             if drive.n_moving() == 0 {
                 break;
             }
-            let Ok(next) = self.state.advanced(&drive.steps, &limits, &self.first.body) else { break };
-            let Ok(model) = next.model(self.first) else { break };
+            let advanced = self.state.advanced(&drive.steps, &limits, &self.first.body);
+            let (next, model) = match advanced.and_then(|next| Ok((next.clone(), next.model(self.first)?))) {
+                Ok(grown) => grown,
+                Err(defect) => {
+                    halt = defect.to_string();
+                    break;
+                }
+            };
             if next.areas().iter().sum::<f64>() <= self.state.areas().iter().sum::<f64>() {
+                halt = "they have no room to advance".into();
                 break;
             }
             (self.state, self.model) = (next, model);
             n += 1;
             place = None;
         }
-        self.has_room = n > 0;
+        self.halt = (n == 0).then_some(halt);
         if let Some(last) = self.surfaces.last_mut() {
             last.load_factor = Some(load_factor);
         }

@@ -66,6 +66,8 @@ pub struct LoadingStep {
     pub point: usize,
     /// The point.
     pub values: LoadPoint,
+    /// The problem with its surfaces.
+    pub model: SolidModel,
     /// The solution.
     pub result: SolidResult,
     /// Traction that pulls the faces together along the normal, for each crack at the places of its opening [stress].
@@ -127,7 +129,11 @@ pub fn solid_loading(
                 growing.extend(&solved, &cohesive.law, place, load_factor)?;
             }
             Traced::Done(record) => {
-                return Ok(record.map(|r| LoadingRecord { surfaces: growing.surfaces, ..*r }));
+                let Some(mut record) = record else { return Ok(None) };
+                if let Some(halt) = growing.halt {
+                    record.end.reason += &format!("; fronts stopped before: {halt}");
+                }
+                return Ok(Some(LoadingRecord { surfaces: growing.surfaces, ..*record }));
             }
         }
     }
@@ -193,7 +199,14 @@ fn traced(
         let tractions = tractions(model, &placed, &condensed, &bonds, state);
         let (result, again) = Solved::new(placed, solved(u, effort)).result_and_place(model, settings, observer)?;
         placed = again;
-        let step = LoadingStep { point, values: curve[point], result, tractions, is_peak: point == peak };
+        let step = LoadingStep {
+            point,
+            values: curve[point],
+            model: model.clone(),
+            result,
+            tractions,
+            is_peak: point == peak,
+        };
         if observer.loading_step(&step).is_break() {
             return Ok(Traced::Done(None));
         }

@@ -11,7 +11,7 @@ mod mesh;
 mod method;
 mod outline;
 mod parts;
-mod plausibility;
+pub(super) mod plausibility;
 pub(super) mod report;
 mod settings;
 mod supports;

@@ -16,14 +16,7 @@ const MOST_STRAIN: f64 = 0.1;
 pub(super) fn check(file: &CaseFile, units: &UnitSystem, report: &mut Report) {
     let names = &units.names;
     let young = file.material.young;
-    let in_gpa = units.in_si(young, dimension("stress")) / 1e9;
-    if !(YOUNG[0]..=YOUNG[1]).contains(&(1e9 * in_gpa)) {
-        let message = format!(
-            "{young} {} are {in_gpa} GPa, but solids that crack have 1 to 1300 GPa; are the units right?",
-            names.stress
-        );
-        report.note("material.young", message);
-    }
+    check_young(young, units, report);
     for (index, load) in file.load.iter().enumerate() {
         let traction = load.traction.as_ref().map_or(0.0, |[x, y]| number(x).abs().max(number(y).abs()));
         let pressure = load.pressure.as_ref().map_or(0.0, |p| number(p).abs());
@@ -44,11 +37,23 @@ pub(super) fn check(file: &CaseFile, units: &UnitSystem, report: &mut Report) {
     }
 }
 
+/// Notes an unlikely modulus.
+pub(in crate::case) fn check_young(young: f64, units: &UnitSystem, report: &mut Report) {
+    let in_gpa = units.in_si(young, dimension("stress")) / 1e9;
+    if !(YOUNG[0]..=YOUNG[1]).contains(&(1e9 * in_gpa)) {
+        let unit = &units.names.stress;
+        let message =
+            format!("{young} {unit} are {in_gpa} GPa, but solids that crack have 1 to 1300 GPa; are the units right?");
+        report.note("material.young", message);
+    }
+}
+
 fn dimension(name: &str) -> Dimension {
     Dimension::named(name).expect("a known name")
 }
 
-fn check_load(key: &str, most: f64, young: f64, unit: &str, report: &mut Report) {
+/// Notes a load that no solid of this modulus bears.
+pub(in crate::case) fn check_load(key: &str, most: f64, young: f64, unit: &str, report: &mut Report) {
     if most > MOST_STRAIN * young {
         let message =
             format!("{most} {unit} are more than a tenth of Young's modulus, {young} {unit}; are the units right?");
@@ -58,10 +63,7 @@ fn check_load(key: &str, most: f64, young: f64, unit: &str, report: &mut Report)
 
 /// Expressions are not judged.
 fn number(scalar: &Scalar) -> f64 {
-    match scalar {
-        Scalar::Number(value) => *value,
-        Scalar::Expression(_) => 0.0,
-    }
+    scalar.number().unwrap_or(0.0)
 }
 
 fn largest(stress: &Stress) -> f64 {

@@ -14,6 +14,16 @@ pub(in crate::case) enum Scalar {
     Expression(String),
 }
 
+impl Scalar {
+    /// Its value, unless it is an expression.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(*value),
+            Self::Expression(_) => None,
+        }
+    }
+}
+
 /// One name or several.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]

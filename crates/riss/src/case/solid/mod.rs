@@ -15,16 +15,19 @@ mod stl;
 #[cfg(test)]
 mod tests;
 
+use super::build::plausibility::{check_load, check_young};
 use super::build::report::Report;
 use super::document::{Content, Document};
 use super::files::Files;
 use super::problem::{self, CaseErrors, Problem};
+use super::schema::Scalar;
+use super::units::UnitSystem;
 use super::{Case, MAX_BYTES, read_text};
 use crate::analysis::{LoadingSettings, SolidGrowthSettings, SolidSettings};
 use crate::material::{Elasticity, PlaneState};
-use crate::model::{RigidMotion, Solid, SolidModel};
+use crate::model::{RigidMotion, Solid, SolidModel, UnitNames};
 use crate::system::collocation::LARGEST_POISSON;
-use schema::SolidFile;
+use schema::{SolidFile, SolidStress};
 use std::path::{Path, PathBuf};
 pub use stl::read_stl;
 
@@ -48,6 +51,8 @@ pub struct SolidCase {
     pub growth: Option<SolidGrowthSettings>,
     /// How far cohesive cracks are loaded, if there are some.
     pub loading: Option<LoadingSettings>,
+    /// Units, if the case says them.
+    pub units: Option<UnitNames>,
     /// The case file.
     pub path: PathBuf,
     /// Its text.
@@ -92,12 +97,12 @@ impl SolidCase {
     /// All problems of the case, in the order of the file.
     pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Self, CaseErrors> {
         let mut problems = vec![];
-        let document = Document::parse(text, overrides, &mut problems);
-        let built = if problems.is_empty() { build(&document, path, &mut problems) } else { None };
+        let mut document = Document::parse(text, overrides, &mut problems);
+        let built = if problems.is_empty() { build(&mut document, path, &mut problems) } else { None };
         match built {
-            Some(Built { model, settings, growth, loading, notes }) if problems.is_empty() => {
+            Some(Built { model, settings, growth, loading, units, notes }) if problems.is_empty() => {
                 let (path, text, overrides) = (path.into(), text.into(), overrides.to_vec());
-                Ok(Self { model, settings, growth, loading, path, text, overrides, notes })
+                Ok(Self { model, settings, growth, loading, units, path, text, overrides, notes })
             }
             _ => {
                 problems.sort_by_key(|p| (p.origin, p.span.as_ref().map_or(usize::MAX, |s| s.start)));
@@ -127,6 +132,13 @@ impl SolidCase {
 
 /// The JSON Schema of the case file of a solid.
 pub fn solid_json_schema() -> serde_json::Value {
+    let mut schema = plain_schema();
+    super::allow_texts(&mut schema);
+    schema
+}
+
+/// The schema with numbers only.
+fn plain_schema() -> serde_json::Value {
     schemars::schema_for!(SolidFile).to_value()
 }
 
@@ -136,11 +148,16 @@ struct Built {
     settings: SolidSettings,
     growth: Option<SolidGrowthSettings>,
     loading: Option<LoadingSettings>,
+    units: Option<UnitNames>,
     notes: Vec<Problem>,
 }
 
-fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
-    let faulty = super::check::check(document, &solid_json_schema(), problems);
+fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> Option<Built> {
+    let schema = plain_schema();
+    let values = super::values::resolve(document, &schema, problems);
+    let document = &*document;
+    let mut faulty = super::check::check(document, &schema, problems);
+    faulty.extend(values.faulty);
     let file: SolidFile = document.without(&faulty, &PLACEHOLDERS, problems)?;
     let files = Files::of(document, path);
     let mut report = Report::new(document, problems);
@@ -183,12 +200,33 @@ fn build(document: &Document, path: &Path, problems: &mut Vec<Problem>) -> Optio
     };
     let (settings, plan) = settings?;
     let growth = growth::growth(&file, &model.body, plan, &mut report);
-    Some(Built { model, settings, growth, loading, notes: report.notes })
+    for name in values.unused {
+        report.note(format!("parameters.{name}"), "nothing uses this parameter");
+    }
+    if let Some(units) = &values.units {
+        plausibility(&file, units, &mut report);
+    }
+    Some(Built { model, settings, growth, loading, units: values.units.map(|u| u.names), notes: report.notes })
 }
 
 /// Stand for required sections that are faulty.
 const PLACEHOLDERS: [(&str, &str); 2] =
     [("material", "young = 1\npoisson = 0.3"), ("geometry", "box = { lower = [0, 0, 0], upper = [1, 1, 1] }")];
+
+/// Notes what does not look like the units that the case says.
+fn plausibility(file: &SolidFile, units: &UnitSystem, report: &mut Report) {
+    let young = file.material.young;
+    check_young(young, units, report);
+    let number = |s: &Scalar| s.number().unwrap_or(0.0).abs();
+    let largest = |s: &SolidStress| [s.xx, s.yy, s.zz, s.xy, s.yz, s.xz].map(f64::abs).into_iter().fold(0.0, f64::max);
+    for (index, load) in file.load.iter().enumerate() {
+        let traction = load.traction.iter().flatten().chain(&load.pressure).map(number).fold(0.0, f64::max);
+        let most = load.stress.as_ref().map_or(0.0, largest).max(traction);
+        check_load(&format!("load[{index}]"), most, young, &units.names.stress, report);
+    }
+    let remote = file.remote_stress.as_ref().map_or(0.0, largest);
+    check_load("remote_stress", remote, young, &units.names.stress, report);
+}
 
 fn material(file: &SolidFile, report: &mut Report) -> Elasticity {
     let m = &file.material;

@@ -10,6 +10,7 @@ use crate::nodes::solid::NodesOnFronts;
 use crate::system::CollocationSettings;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// `[x, y, z]`.
 pub(in crate::case) type Triple = [f64; 3];
@@ -22,6 +23,12 @@ pub(in crate::case) struct SolidFile {
     /// Title in the results.
     #[serde(default)]
     pub title: Option<String>,
+    /// Units of length, force and stress, such as "mm, N, MPa"; then numbers may carry units of their own, "200 GPa".
+    #[serde(default, rename = "units")]
+    pub _units: Option<String>,
+    /// Numbers with names, for expressions such as "2*a" wherever a number is due, and for sweeps.
+    #[serde(default, rename = "parameters")]
+    pub _parameters: BTreeMap<String, f64>,
     /// Where the files that the case names may lie.
     #[serde(default, rename = "files")]
     pub _files: FileAccess,

@@ -1,9 +1,10 @@
 //! `report.html`: one file that shows a run in any browser, without a network.
 //!
 //! Reading order: [`step_fields`] (what is kept of each step, as a file of its own), with `thinning` and `quantize` below
-//! it; then this file, which puts page, script and data together. What the user wrote is escaped, always.
+//! it, for solids [`solid_scene`]; then this file, which puts page, script and data together. What the user wrote is escaped, always.
 
 mod quantize;
+pub mod solid_scene;
 mod step_fields;
 mod thinning;
 
@@ -76,7 +77,7 @@ pub struct RunSource {
 /// What the system says; `InvalidData` if the results there are none of ours.
 pub fn write_report(dir: &Path) -> io::Result<PathBuf> {
     let page = match read_solid_results(dir) {
-        Some(results) => solid_report(&results),
+        Some(results) => solid_report(&results, &solid_scene::Scenes::read(dir)?),
         None => report(dir, &read_results(dir)?)?,
     };
     let path = dir.join(REPORT_FILE);
@@ -175,8 +176,11 @@ fn choose(dir: &Path, steps: &[usize], most_bytes: u64) -> Vec<(usize, PathBuf)>
     kept
 }
 
+/// Script of the view of a solid.
+pub(super) const SOLID_SCRIPT: &str = include_str!("js/solid.js");
+
 /// A block of data that the browser does not run.
-fn push_data(page: &mut String, id: &str, json: &str) {
+pub(super) fn push_data(page: &mut String, id: &str, json: &str) {
     page.push_str(&format!("<script type=\"application/json\" id=\"{id}\">"));
     push_json(page, json);
     page.push_str("</script>\n");

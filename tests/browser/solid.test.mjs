@@ -1,0 +1,124 @@
+// report.html of solids in headless Chromium: the view in space, its steps, keys and values. Opened from the disk, offline.
+
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const riss = process.env.RISS ?? join(root, "target/release/riss");
+const scratch = mkdtempSync(join(tmpdir(), "riss-solid-report-"));
+const grown = join(scratch, "grown");
+const broken = join(scratch, "broken");
+let browser;
+
+function run(folder, name, ...settings) {
+  const options = settings.flatMap((s) => ["--set", s]);
+  const done = spawnSync(riss, ["run", join(root, "cases", name, "case.toml"), "--quiet", "--out", folder, ...options], { encoding: "utf8" });
+  assert.equal(done.status, 0, done.stderr);
+}
+
+before(async () => {
+  run(grown, "penny-growth", "growth.steps=1", "nodes.front_spacing=0.15", "nodes.growth=0.3");
+  run(broken, "cohesive-bar", "nodes.spacing=4");
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+  });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(scratch, { recursive: true, force: true });
+});
+
+async function withReport(folder, options, check) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, offline: true, ...options });
+  const page = await context.newPage();
+  const problems = [];
+  const requests = [];
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) problems.push(message.text()); });
+  page.on("pageerror", (error) => problems.push(error.stack));
+  page.on("request", (request) => requests.push(request.url()));
+  await page.goto(pathToFileURL(join(folder, "report.html")).href);
+  await page.waitForSelector("html[data-ready]", { timeout: 20_000 });
+  await check(page);
+  assert.deepEqual(problems, []);
+  assert.equal(requests.length, 1, requests.join("\n"));
+  await context.close();
+}
+
+const results = (folder) => JSON.parse(readFileSync(join(folder, "results.json"), "utf8"));
+const picture = (page) => page.evaluate(() => document.getElementById("view-canvas").toDataURL());
+const setSlider = (page, id, value) => page.evaluate(([i, v]) => {
+  const slider = document.getElementById(i);
+  slider.value = v;
+  slider.dispatchEvent(new Event("input"));
+}, [id, value]);
+
+/** All that is said under the cursor, as it goes over the view. */
+async function told(page) {
+  const box = await page.locator("#view-canvas").boundingBox();
+  const all = new Set();
+  for (let x = 0.35; x < 0.65; x += 0.01) {
+    for (let y = 0.35; y < 0.65; y += 0.02) {
+      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+      all.add(await page.locator("#view-status").textContent());
+    }
+  }
+  return [...all].filter((text) => text);
+}
+
+test("values under the cursor are those of results.json", () => withReport(grown, {}, async (page) => {
+  await page.locator("#view-canvas").scrollIntoViewIfNeeded();
+  const fronts = results(grown).steps.at(-1).fronts;
+  const known = fronts.flatMap((f) => f.points).map((p) => Number(p.K_I).toPrecision(5));
+  const said = await told(page);
+  const factors = said.filter((t) => t.startsWith("front of penny")).map((t) => /K_I (\S+),/.exec(t)[1]);
+  assert.ok(factors.length >= 3, said.join("\n"));
+  factors.forEach((k) => assert.ok(known.includes(k), `${k} is not among ${known}`));
+  assert.ok(said.some((t) => t.startsWith("penny at (") && t.includes("opening")), said.join("\n"));
+}));
+
+test("the slider shows the steps, and the view turns by mouse and keys", () => withReport(grown, {}, async (page) => {
+  const steps = results(grown).steps;
+  assert.equal(await page.locator("#view-step").getAttribute("max"), String(steps.length - 1));
+  const last = await picture(page);
+  await setSlider(page, "view-step", 0);
+  assert.notEqual(await picture(page), last);
+  assert.ok((await page.locator("#view-label").textContent()).startsWith("step 0: crack area 3.1"));
+  await setSlider(page, "view-step", steps.length - 1);
+  assert.equal(await picture(page), last);
+  await page.locator("#view-canvas").focus();
+  await page.keyboard.press("ArrowLeft");
+  const turned = await picture(page);
+  assert.notEqual(turned, last);
+  await page.keyboard.press("0");
+  assert.equal(await picture(page), last);
+  const box = await page.locator("#view-canvas").boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.55 * box.height);
+  await page.mouse.up();
+  assert.notEqual(await picture(page), last);
+  await page.locator("#view-reset").click();
+  assert.equal(await picture(page), last);
+  await page.locator("#view-whole").click();
+  assert.notEqual(await picture(page), last);
+  await page.locator("#view-reset").click();
+  await setSlider(page, "view-opening", 3);
+  assert.notEqual(await picture(page), last);
+}));
+
+test("states of a load curve are there, on a phone and in the dark, too", () => withReport(broken, { viewport: { width: 390, height: 800 }, colorScheme: "dark" }, async (page) => {
+  const curve = results(broken).load_curve;
+  const label = await page.locator("#view-label").textContent();
+  const [step, load] = /step (\d+): load (\S+)/.exec(label).slice(1).map(Number);
+  assert.ok(Math.abs(curve[step].load - load) <= 1e-4 * Math.abs(load), label);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "no scrolling sideways");
+  assert.ok(statSync(join(broken, "report.html")).size < 20e6);
+}));
