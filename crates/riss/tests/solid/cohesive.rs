@@ -99,3 +99,43 @@ fn an_inclined_plane_opens_and_slides() {
         assert!((stress - expected).abs() < 1e-3 * strength, "{stress} {expected}");
     }
 }
+
+/// A surface that begins as a strip grows across a bar under uniform tension, which then follows the law as a whole:
+/// peak `f_t A`, stress `t(w)`. The tied part ahead changes nothing.
+#[test]
+fn a_strip_grows_through_a_bar() {
+    let (young, length, area, strength, energy) = (30000.0, 40.0, 100.0, 3.0, 0.1);
+    let (record, steps) = load(&format!(
+        "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = {young}, poisson = 0.2, \
+         cohesive = {{ strength = {strength}, fracture_energy = {energy} }} }}\n\
+         geometry.box = {{ lower = [0, 0, 0], upper = [10, 10, {length}] }}\nnodes.spacing = 3\n\
+         support = [{{ on = 'z-min', z = 0 }}, {{ on = 'z-max', z = 0.01 }}]\n\
+         crack = [{{ cohesive = true, polygon = [[0, 0, 18], [3, 0, 18], [3, 10, 18], [0, 10, 18]] }}]\n\
+         growth = {{ steps = 40, increment = 3, criterion.largest-principal-stress = {{ tensile_strength = {strength} }} }}"
+    ));
+    assert!((record.surfaces[0].areas[0] - 30.0).abs() < 1e-9);
+    let last = record.surfaces.last().unwrap();
+    assert!((last.areas[0] - area).abs() < 1e-6 * area && last.strips > 0, "{last:?}");
+    assert!((record.curve[record.peak].load / (strength * area) - 1.0).abs() < 1e-5);
+    let law = CohesiveLaw { strength, fracture_energy: energy, softening: Softening::Exponential, shear_ratio: 0.0 };
+    for point in record.curve.iter().filter(|p| p.crack_area > 0.0) {
+        let stress = point.load / area;
+        let expected = law.softening((point.displacement - length * stress / young).max(0.0))[0];
+        assert!((stress - expected).abs() < 1e-4 * strength, "{stress} {expected}");
+    }
+    assert!(steps.iter().all(|s| s.model.cracks[0].fronts.is_empty()));
+}
+
+/// With no steps left a path ends where the front would have to grow.
+#[test]
+fn growth_ends_with_its_steps() {
+    let (record, _) = load(
+        "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 30000, poisson = 0.2, \
+         cohesive = { strength = 3, fracture_energy = 0.1 } }\n\
+         geometry.box = { lower = [0, 0, 0], upper = [10, 10, 40] }\nnodes.spacing = 3\n\
+         support = [{ on = 'z-min', z = 0 }, { on = 'z-max', z = 0.01 }]\n\
+         crack = [{ cohesive = true, polygon = [[0, 0, 18], [3, 0, 18], [3, 10, 18], [0, 10, 18]] }]\n\
+         growth = { steps = 1, increment = 3, criterion.largest-principal-stress = { tensile_strength = 3 } }",
+    );
+    assert_eq!((record.end.kind, record.surfaces.len()), (GrowthEndKind::StepsDone, 2), "{:?}", record.end);
+}

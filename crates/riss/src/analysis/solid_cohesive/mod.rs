@@ -36,7 +36,7 @@ const LEAST_SHARE: f64 = 0.1;
 /// Faces that pass on more shear than this, over the strength, must be let slide.
 const STICKS: f64 = 0.05;
 /// Where work and energies differ by more than this share of the work, supports of nodes are as large as the ligament.
-const IMBALANCE: f64 = 0.1;
+const IMBALANCE: f64 = 0.15;
 /// Steps with files of their fields, besides the first, that of the peak and the last.
 const PICTURES: usize = 10;
 

@@ -218,5 +218,5 @@ fn cohesive_cracks_have_a_law_and_notches() {
     assert_eq!(found.len(), 3, "{found:?}");
     let growing = format!("{HEAD}{BOX}{load}{crack}growth = {{ steps = 1, increment = 1, criterion.stress-intensity-factors = {{ exponent = 2 }} }}")
         .replace("poisson = 0.3", "poisson = 0.3, cohesive = { strength = 3, fracture_energy = 1 }");
-    assert!(problems(&growing).iter().any(|p| p.starts_with("growth:")));
+    assert!(problems(&growing).iter().any(|p| p.starts_with("growth.criterion: crack[0] is cohesive")));
 }
