@@ -96,16 +96,16 @@ fn check_path(method: Method, runs: [(f64, usize); 2], factor: f64) {
     assert!(apart.iter().all(|d| *d > 0.0 && *d < 0.02) && apart[1] < factor * apart[0], "{apart:?}");
 }
 
-/// Measured: 0.0136 apart for increments of 0.02, 0.0104 for 0.01.
+/// Measured: 0.0104 apart for increments of 0.01, 0.0039 for 0.005; 0.0136 for 0.02 is too good by chance to begin with.
 #[test]
 fn path_of_the_force_comes_to_that_of_the_hoop_stress() {
-    check_path(Method::ElementFreeGalerkin, [(0.02, 9), (0.01, 18)], 0.8);
+    check_path(Method::ElementFreeGalerkin, [(0.01, 18), (0.005, 36)], 0.6);
 }
 
-/// Increments are halved while the path turns. Measured: 0.0124 apart for increments of 0.04, 0.0111 for 0.02.
+/// Increments are halved while the path turns. Measured: 0.0111 apart for increments of 0.02, 0.0046 for 0.01.
 #[test]
 fn path_of_cracking_particles_comes_to_that_of_the_hoop_stress() {
-    check_path(Method::CrackingParticles, [(0.04, 8), (0.02, 12)], 0.9);
+    check_path(Method::CrackingParticles, [(0.02, 12), (0.01, 20)], 0.8);
 }
 
 /// From a straight crack in pure mode II by the other criterion of [CPM, section 4.3]: 70.5° at once, and the path of the
