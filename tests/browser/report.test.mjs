@@ -1,61 +1,24 @@
 // report.html in headless Chromium: pictures, values, keys, widths, paper. Reports are opened from the disk, offline.
 
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { pathToFileURL } from "node:url";
+import { browser, riss, run, scratch, start, stop, withReport } from "./reports.mjs";
 import { readVtu, valueAt } from "./vtu.mjs";
 
-const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
-const riss = process.env.RISS ?? join(root, "target/release/riss");
-const scratch = mkdtempSync(join(tmpdir(), "riss-report-"));
 const ATTACK = "</script><script>alert(1)</script>";
 const grown = join(scratch, "grown");
 const still = join(scratch, "still");
-let browser;
-
-/** Runs a case into a folder. */
-function run(folder, name, ...settings) {
-  const options = settings.flatMap((s) => ["--set", s]);
-  const done = spawnSync(riss, ["run", join(root, "cases", name, "case.toml"), "--quiet", "--out", folder, ...options], { encoding: "utf8" });
-  assert.equal(done.status, 0, done.stderr);
-}
 
 before(async () => {
   run(grown, "fatigue-edge-crack", "growth.steps=4");
   run(still, "shear-edge-crack", `title='${ATTACK}'`, "output.fields=true");
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
+  await start();
 });
 
-after(async () => {
-  await browser?.close();
-  rmSync(scratch, { recursive: true, force: true });
-});
-
-/** Opens a report and checks at the end that nothing went wrong and nothing was loaded. */
-async function withReport(folder, options, check) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, offline: true, ...options });
-  const page = await context.newPage();
-  const problems = [];
-  const requests = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) problems.push(message.text()); });
-  page.on("pageerror", (error) => problems.push(error.stack));
-  page.on("dialog", (dialog) => { problems.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
-  page.on("request", (request) => requests.push(request.url()));
-  await page.goto(pathToFileURL(join(folder, "report.html")).href);
-  await page.waitForSelector("html[data-ready]", { timeout: 20_000 });
-  await check(page);
-  assert.deepEqual(problems, []);
-  assert.equal(requests.length, 1, requests.join("\n"));
-  await context.close();
-}
+after(stop);
 
 const results = (folder) => JSON.parse(readFileSync(join(folder, "results.json"), "utf8"));
 const picture = (page) => page.evaluate(() => document.getElementById("map").toDataURL());

@@ -1,56 +1,21 @@
 // report.html of solids in headless Chromium: the view in space, its steps, keys and values. Opened from the disk, offline.
 
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { readFileSync, statSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { run, scratch, start, stop, withReport } from "./reports.mjs";
 
-const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
-const riss = process.env.RISS ?? join(root, "target/release/riss");
-const scratch = mkdtempSync(join(tmpdir(), "riss-solid-report-"));
 const grown = join(scratch, "grown");
 const broken = join(scratch, "broken");
-let browser;
-
-function run(folder, name, ...settings) {
-  const options = settings.flatMap((s) => ["--set", s]);
-  const done = spawnSync(riss, ["run", join(root, "cases", name, "case.toml"), "--quiet", "--out", folder, ...options], { encoding: "utf8" });
-  assert.equal(done.status, 0, done.stderr);
-}
 
 before(async () => {
   run(grown, "penny-growth", "growth.steps=1", "nodes.front_spacing=0.15", "nodes.growth=0.3");
   run(broken, "cohesive-bar", "nodes.spacing=4");
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
+  await start();
 });
 
-after(async () => {
-  await browser?.close();
-  rmSync(scratch, { recursive: true, force: true });
-});
-
-async function withReport(folder, options, check) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, offline: true, ...options });
-  const page = await context.newPage();
-  const problems = [];
-  const requests = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) problems.push(message.text()); });
-  page.on("pageerror", (error) => problems.push(error.stack));
-  page.on("request", (request) => requests.push(request.url()));
-  await page.goto(pathToFileURL(join(folder, "report.html")).href);
-  await page.waitForSelector("html[data-ready]", { timeout: 20_000 });
-  await check(page);
-  assert.deepEqual(problems, []);
-  assert.equal(requests.length, 1, requests.join("\n"));
-  await context.close();
-}
+after(stop);
 
 const results = (folder) => JSON.parse(readFileSync(join(folder, "results.json"), "utf8"));
 const picture = (page) => page.evaluate(() => document.getElementById("view-canvas").toDataURL());

@@ -8,7 +8,7 @@
 //! Differs from [CPM, Eqs. 8, 12, 18]: their signs do not agree. Here `g_1 = J > 0`, and the crack grows along `+g`.
 //! Differs from [CPM, Eq. 22]: q is one in the middle of a domain, so that the nodes at the tip count least.
 
-use super::interaction_integral::{FacePressure, ForceAt, GradientField, TOGETHER, TipLoads};
+use super::interaction_integral::{FacePressure, ForceAt, GradientField, TipLoads, integrands};
 use super::settings::{FaceTerm, FractureSettings, JIntegral, TipDomainShape};
 use super::tip_domain::{PLATEAU, TipView, rim};
 use crate::error::Result;
@@ -16,7 +16,6 @@ use crate::material::Elasticity;
 use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::{Matrix2, Vector2, turn_left};
 use crate::nodes::triangulation::SIGHT_SHIFT;
-use rayon::prelude::*;
 
 /// Points on each piece of the crack faces.
 const FACE_POINTS: usize = 24;
@@ -252,22 +251,7 @@ fn sum<F: GradientField, P: Sync>(
     at: impl Fn(&P) -> (Vector2, Vector2) + Sync,
     integrand: impl Fn(&P, &Matrix2) -> Vector2 + Sync,
 ) -> Result<Vector2> {
-    let mut values = vec![Vector2::zeros(); points.len()];
-    values
-        .par_chunks_mut(TOGETHER)
-        .zip(points.par_chunks(TOGETHER))
-        .with_min_len(64 / TOGETHER)
-        .map_init(<(F::Buffer, Vec<Matrix2>)>::default, |(buffer, gradients), (values, points)| {
-            let mut views = [[Vector2::zeros(); 2]; TOGETHER];
-            let views = &mut views[..points.len()];
-            views.iter_mut().zip(points).for_each(|(view, p)| *view = at(p).into());
-            field.gradients(views, buffer, gradients)?;
-            for ((value, p), gradient) in values.iter_mut().zip(points).zip(gradients.iter()) {
-                *value = integrand(p, gradient);
-            }
-            Ok(())
-        })
-        .collect::<Result<()>>()?;
+    let values = integrands(points, field, |p| at(p).into(), integrand)?;
     Ok(values.into_iter().fold(Vector2::zeros(), |s, v| s + v))
 }
 

@@ -52,7 +52,7 @@ pub trait GradientField: Sync {
 }
 
 /// Points of a domain that are looked up together.
-pub(super) const TOGETHER: usize = 4;
+const TOGETHER: usize = 4;
 
 /// The gradient of a solution.
 #[derive(Clone, Copy, Debug)]
@@ -239,6 +239,34 @@ impl DomainPoint {
 /// Integrands: interaction with modes I and II and the point force, and the solution with itself.
 type Integrals = [f64; 4];
 
+/// Values of an integrand at points, in their order, from the gradients there.
+///
+/// - `at`: position of a point, and where it sees from
+pub(super) fn integrands<F: GradientField, P: Sync, V: Clone + Default + Send>(
+    points: &[P],
+    field: &F,
+    at: impl Fn(&P) -> [Vector2; 2] + Sync,
+    integrand: impl Fn(&P, &Matrix2) -> V + Sync,
+) -> Result<Vec<V>> {
+    let mut values = vec![V::default(); points.len()];
+    values
+        .par_chunks_mut(TOGETHER)
+        .zip(points.par_chunks(TOGETHER))
+        .with_min_len(64 / TOGETHER)
+        .map_init(<(F::Buffer, Vec<Matrix2>)>::default, |(buffer, gradients), (values, points)| {
+            let mut views = [[Vector2::zeros(); 2]; TOGETHER];
+            let views = &mut views[..points.len()];
+            views.iter_mut().zip(points).for_each(|(view, p)| *view = at(p));
+            field.gradients(views, buffer, gradients)?;
+            for ((value, p), gradient) in values.iter_mut().zip(points).zip(gradients.iter()) {
+                *value = integrand(p, gradient);
+            }
+            Ok(())
+        })
+        .collect::<Result<()>>()?;
+    Ok(values)
+}
+
 fn integrate<F: GradientField>(
     view: &TipView,
     points: &[DomainPoint],
@@ -247,22 +275,10 @@ fn integrate<F: GradientField>(
     integrand: impl Fn(&DomainPoint, &State) -> Integrals + Sync,
 ) -> Result<Integrals> {
     let rotation = Matrix2::from_columns(&[view.frame.x1(), view.frame.x2()]);
-    let mut values = vec![[0.0; 4]; points.len()];
-    values
-        .par_chunks_mut(TOGETHER)
-        .zip(points.par_chunks(TOGETHER))
-        .with_min_len(64 / TOGETHER)
-        .map_init(<(F::Buffer, Vec<Matrix2>)>::default, |(buffer, gradients), (values, points)| {
-            let mut views = [[Vector2::zeros(); 2]; TOGETHER];
-            let views = &mut views[..points.len()];
-            views.iter_mut().zip(points).for_each(|(view, p)| *view = [p.position, p.sight]);
-            field.gradients(views, buffer, gradients)?;
-            for ((value, p), gradient) in values.iter_mut().zip(points).zip(gradients.iter()) {
-                *value = integrand(p, &State::new(material, rotation.transpose() * gradient * rotation, p));
-            }
-            Ok(())
-        })
-        .collect::<Result<()>>()?;
+    let value = |p: &DomainPoint, gradient: &Matrix2| {
+        integrand(p, &State::new(material, rotation.transpose() * gradient * rotation, p))
+    };
+    let values = integrands(points, field, |p| [p.position, p.sight], value)?;
     // In order, so that any number of threads gives the same bits.
     let mut sum = [0.0; 4];
     for v in values {

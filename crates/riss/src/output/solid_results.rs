@@ -3,7 +3,9 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::{RunInfo, RunStatus};
-use crate::analysis::{FrontPointRecord, FrontRecord, GrowthEnd, LoadPoint, LoadingRecord, SolidResult, SolidStep};
+use crate::analysis::{
+    FrontPointRecord, FrontRecord, GrownSurface, GrowthEnd, LoadPoint, LoadingRecord, SolidResult, SolidStep,
+};
 use crate::model::{SolidModel, UnitNames};
 use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
@@ -75,6 +77,9 @@ pub struct LoadingResults {
     pub dissipated_energy: Option<f64>,
     /// Why it ended.
     pub end: GrowthEnd,
+    /// Surfaces from first to last, if they grow.
+    #[serde(default)]
+    pub surfaces: Vec<GrownSurface>,
 }
 
 /// A point of the load curve.
@@ -312,6 +317,7 @@ impl SolidResults {
             peak,
             dissipated_energy,
             end: record.end.clone(),
+            surfaces: record.surfaces.clone(),
         });
     }
 

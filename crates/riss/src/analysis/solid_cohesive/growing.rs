@@ -10,12 +10,13 @@ use super::super::solid_growth::drive::{Drive, by_strength, place_on};
 use super::super::solid_growth::{SolidGrowthSettings, SolidGrowthState};
 use super::super::solid_static::{SolidSettings, Solved};
 use super::{LoadPoint, LoadingRecord};
-use crate::crack::{CrackDefect, EdgeLimits, FrontStep};
+use crate::crack::{CrackDefect, EdgeLimits};
 use crate::error::Result;
 use crate::material::CohesiveLaw;
 use crate::math::Vector3;
 use crate::model::SolidModel;
 use crate::nodes::solid::{Region, SpacingPlan};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A front moves where the stress ahead is this share of the strength, or of the largest ahead of all fronts if that is less.
@@ -26,7 +27,8 @@ const AT_PLACE: f64 = 1.5;
 const STRIPS: usize = 20;
 
 /// Surfaces at one time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct GrownSurface {
     /// Area of each crack in the body, with what is still tied [area].
     pub areas: Vec<f64>,
@@ -149,14 +151,12 @@ impl<'a> Growing<'a> {
     fn drive(&self, solved: &Solved, near: f64, place: Option<Vector3>) -> Result<Drive> {
         let increment = self.growth.increment;
         let mut drive = self.by_strength(solved, near)?;
-        for (c, crack) in self.state.cracks.iter().enumerate() {
-            let is_cohesive = self.model.cohesive_crack(c).is_some();
-            for (front, steps) in crack.fronts().iter().zip(&mut drive.steps[c]) {
+        let Some(place) = place else { return Ok(drive) };
+        for (crack, of_crack) in self.state.cracks.iter().zip(&mut drive.steps) {
+            for (front, steps) in crack.fronts().iter().zip(of_crack) {
                 for (point, step) in front.line.points.iter().zip(steps) {
-                    let is_at = |p: Vector3| (p - point.position).norm() <= AT_PLACE * increment;
-                    if !is_cohesive {
-                        *step = FrontStep::none();
-                    } else if place.is_some_and(is_at) && step.direction != Vector3::zeros() {
+                    let is_at = (place - point.position).norm() <= AT_PLACE * increment;
+                    if is_at && step.direction != Vector3::zeros() {
                         step.length = increment;
                     }
                 }

@@ -38,7 +38,7 @@ impl Drive {
     }
 }
 
-/// By the largest principal stress.
+/// By the largest principal stress. Where some cracks are cohesive, the others stay.
 pub(in crate::analysis) fn by_strength(
     model: &SolidModel,
     solved: &Solved,
@@ -47,9 +47,14 @@ pub(in crate::analysis) fn by_strength(
     tensile_strength: f64,
 ) -> Result<Drive> {
     let mut drive = Drive::default();
-    for crack in cracks {
+    for (c, crack) in cracks.iter().enumerate() {
         let mut of_crack = vec![];
+        let stays = model.cohesive.is_some() && model.cohesive_crack(c).is_none();
         for front in crack.fronts() {
+            if stays {
+                of_crack.push(vec![FrontStep::none(); front.line.points.len()]);
+                continue;
+            }
             let mut of_front = vec![];
             let n = front.line.points.len();
             for (k, point) in front.line.points.iter().enumerate() {
