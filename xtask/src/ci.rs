@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
-/// Format, clippy, tests (tidy and doc tests among them), documentation, the Python package; stops at the first failure.
+/// Format, clippy, tests (tidy and doc tests among them), documentation, instructions, the Python package; stops at the first failure.
 pub fn run_all() -> Outcome {
     step("format", || run(&mut cargo(&["fmt", "--all", "--check"])))?;
     step("tidy", crate::tidy::run)?;
@@ -14,6 +14,10 @@ pub fn run_all() -> Outcome {
     let mut results = vec![];
     step("tests", || run_tests(&mut results))?;
     step("documentation", run_rustdoc)?;
+    match crate::instructions::can_count() {
+        true => step("instructions", || crate::instructions::run(crate::instructions::Counts::Check))?,
+        false => println!("== instructions are not counted: valgrind is not installed"),
+    }
     step("python", crate::python::test)?;
     println!("\nclosing lines of the tests");
     for line in &results {
