@@ -29,12 +29,10 @@ impl Obstacles {
 
     /// Whether no obstacle cuts the segment from `a` to `b`; touching at `a` or `b` does not cut.
     pub fn visible(&self, a: Vector2, b: Vector2) -> bool {
-        let mut clear = true;
-        self.tree.visit(&Aabb::of_points([a, b]), |i| {
+        !self.tree.any_along(a, b, |i| {
             let [c, d] = self.segments[i as usize];
-            clear = clear && !segment_is_cut(a, b, c, d);
-        });
-        clear
+            segment_is_cut(a, b, c, d)
+        })
     }
 
     /// Indices of the obstacles near a box, into a buffer.
@@ -87,11 +85,7 @@ impl OpaqueTriangles {
 
 impl Opaque<3> for OpaqueTriangles {
     fn visible(&self, from: Vector3, to: Vector3) -> bool {
-        let mut clear = true;
-        self.tree.visit(&Aabb::of_points([from, to]), |i| {
-            clear = clear && !cuts_segment(self.triangles[i as usize], from, to);
-        });
-        clear
+        !self.tree.any_along(from, to, |i| cuts_segment(self.triangles[i as usize], from, to))
     }
 }
 

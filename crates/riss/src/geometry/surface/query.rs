@@ -141,9 +141,7 @@ impl Surface {
 
     /// Whether a triangle cuts the segment from `p` to `q`; touching at an end does not cut.
     pub fn cuts(&self, p: Vector3, q: Vector3) -> bool {
-        let mut is_cut = false;
-        self.tree.visit(&Aabb::of_points([p, q]), |t| is_cut = is_cut || cuts_segment(self.corners(t), p, q));
-        is_cut
+        self.tree.any_along(p, q, |t| cuts_segment(self.corners(t), p, q))
     }
 
     /// Distance through the material from a point of a triangle to the surface across, if that is within `limit` and
