@@ -19,18 +19,22 @@ after(stop);
 
 const results = (folder) => JSON.parse(readFileSync(join(folder, "results.json"), "utf8"));
 const picture = (page) => page.evaluate(() => document.getElementById("view-canvas").toDataURL());
-const setSlider = (page, id, value) => page.evaluate(([i, v]) => {
-  const slider = document.getElementById(i);
-  slider.value = v;
-  slider.dispatchEvent(new Event("input"));
-}, [id, value]);
+/** Sets a slider or a choice and waits until the picture follows. */
+async function set(page, id, value) {
+  await page.evaluate(([i, v]) => {
+    const control = document.getElementById(i);
+    control.value = v;
+    control.dispatchEvent(new Event("input"));
+  }, [id, value]);
+  await page.waitForFunction(() => document.getElementById("view-canvas").dataset.drawn === document.getElementById("view-step").value);
+}
 
 /** All that is said under the cursor, as it goes over the view. */
-async function told(page) {
+async function told(page, [from, to, by]) {
   const box = await page.locator("#view-canvas").boundingBox();
   const all = new Set();
-  for (let x = 0.35; x < 0.65; x += 0.01) {
-    for (let y = 0.35; y < 0.65; y += 0.02) {
+  for (let x = from; x < to; x += by) {
+    for (let y = from; y < to; y += 2 * by) {
       await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
       all.add(await page.locator("#view-status").textContent());
     }
@@ -42,7 +46,7 @@ test("values under the cursor are those of results.json", () => withReport(grown
   await page.locator("#view-canvas").scrollIntoViewIfNeeded();
   const fronts = results(grown).steps.at(-1).fronts;
   const known = fronts.flatMap((f) => f.points).map((p) => Number(p.K_I).toPrecision(5));
-  const said = await told(page);
+  const said = await told(page, [0.35, 0.65, 0.01]);
   const factors = said.filter((t) => t.startsWith("front of penny")).map((t) => /K_I (\S+),/.exec(t)[1]);
   assert.ok(factors.length >= 3, said.join("\n"));
   factors.forEach((k) => assert.ok(known.includes(k), `${k} is not among ${known}`));
@@ -53,10 +57,10 @@ test("the slider shows the steps, and the view turns by mouse and keys", () => w
   const steps = results(grown).steps;
   assert.equal(await page.locator("#view-step").getAttribute("max"), String(steps.length - 1));
   const last = await picture(page);
-  await setSlider(page, "view-step", 0);
+  await set(page, "view-step", 0);
   assert.notEqual(await picture(page), last);
   assert.ok((await page.locator("#view-label").textContent()).startsWith("step 0: crack area 3.1"));
-  await setSlider(page, "view-step", steps.length - 1);
+  await set(page, "view-step", steps.length - 1);
   assert.equal(await picture(page), last);
   await page.locator("#view-canvas").focus();
   await page.keyboard.press("ArrowLeft");
@@ -75,8 +79,51 @@ test("the slider shows the steps, and the view turns by mouse and keys", () => w
   await page.locator("#view-whole").click();
   assert.notEqual(await picture(page), last);
   await page.locator("#view-reset").click();
-  await setSlider(page, "view-opening", 3);
+  await set(page, "view-opening", 3);
   assert.notEqual(await picture(page), last);
+}));
+
+test("the field under the cursor is that of the bar: its load over its section, and linear displacement", () => withReport(broken, {}, async (page) => {
+  await page.locator("#view-canvas").scrollIntoViewIfNeeded();
+  await set(page, "view-step", 0);
+  await set(page, "view-body", "both");
+  await page.locator("#view-whole").click();
+  const label = await page.locator("#view-label").textContent();
+  const [step] = /step (\d+):/.exec(label).slice(1).map(Number);
+  const { displacement, load } = results(broken).load_curve[step];
+  const pattern = /^boundary at \(\S+, \S+, (\S+)\): .+ (\S+)$/;
+  const fields = {
+    stress_zz: () => load / 100,
+    von_mises: () => load / 100,
+    displacement_z: (z) => (displacement * z) / 40,
+    stress_xx: () => 0,
+  };
+  for (const [name, expected] of Object.entries(fields)) {
+    await set(page, "view-field", name);
+    const said = (await told(page, [0.3, 0.7, 0.03])).map((t) => pattern.exec(t)).filter((m) => m).map((m) => m.slice(1).map(Number));
+    assert.ok(said.length > 10, `${name}: ${said.length}`);
+    const size = name.startsWith("stress") || name === "von_mises" ? load / 100 : displacement;
+    for (const [z, value] of said) assert.ok(Math.abs(value - expected(z)) < 2e-3 * size, `${name} at ${z}: ${value}`);
+  }
+}));
+
+test("the body is shown from behind, whole, by its edges, and in every quantity", () => withReport(grown, {}, async (page) => {
+  await page.locator("#view-whole").click();
+  const seen = new Set();
+  for (const body of ["far", "both", "none"]) {
+    await set(page, "view-body", body);
+    seen.add(await picture(page));
+  }
+  assert.equal(seen.size, 3);
+  await set(page, "view-body", "far");
+  const names = await page.locator("#view-field option").evaluateAll((all) => all.map((o) => o.value));
+  assert.equal(names.length, 12);
+  const fields = new Set();
+  for (const name of names) {
+    await set(page, "view-field", name);
+    fields.add(await picture(page));
+  }
+  assert.equal(fields.size, names.length);
 }));
 
 test("states of a load curve are there, on a phone and in the dark, too", () => withReport(broken, { viewport: { width: 390, height: 800 }, colorScheme: "dark" }, async (page) => {

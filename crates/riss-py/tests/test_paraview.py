@@ -48,6 +48,12 @@ def test_a_solid_with_a_crack(tmp_path):
     nodes = read(tmp_path / "nodes.pvd")
     assert nodes.n_points == run.record["nodes"]
     assert np.allclose(nodes.point_data["displacement"], run.displacement, rtol=1e-6, atol=1e-12)
+    boundary = read(tmp_path / "boundary.pvd")
+    areas = boundary.compute_cell_sizes().cell_data["Area"]
+    lower, upper = np.array(boundary.bounds).reshape(3, 2).T
+    a, b, c = upper - lower
+    assert areas.sum() == pytest.approx(2 * (a * b + b * c + c * a), rel=1e-6)
+    assert np.isfinite(boundary.point_data["von Mises stress"]).all()
     crack = read(tmp_path / "cracks.pvd")
     # A disc of radius 1 in triangles between its nodes.
     assert crack.compute_cell_sizes().cell_data["Area"].sum() == pytest.approx(np.pi, rel=0.02)

@@ -1,5 +1,6 @@
 //! What the analysis of a solid finds.
 
+use super::solid_boundary::BoundaryFields;
 use super::warnings::Warning;
 use crate::crack::{CrackSurface, FrontPoint};
 use crate::fracture::FrontFactors;
@@ -25,6 +26,8 @@ pub struct SolidResult {
     pub pairs: Vec<FacePair>,
     /// Each crack with its opening.
     pub opened_cracks: Vec<OpenedCrack>,
+    /// Fields on the boundary of the body.
+    pub boundary: BoundaryFields,
     /// Every front.
     pub fronts: Vec<FrontRecord>,
     /// What the linear solver did.
@@ -82,13 +85,21 @@ impl HasPosition for Vertex {
     }
 }
 
+/// Principal values of a stress, the largest first [stress]; not numbers where the stress is none.
+pub fn principal_stresses(stress: &Matrix<3>) -> [f64; 3] {
+    if stress.iter().any(|s| !s.is_finite()) {
+        return [f64::NAN; 3];
+    }
+    let values = stress.symmetric_eigenvalues();
+    let mut sorted = [values[0], values[1], values[2]];
+    sorted.sort_by(|a, b| b.total_cmp(a));
+    sorted
+}
+
 impl SolidResult {
     /// Principal stresses at a node, the largest first [stress].
     pub fn principal_stresses(&self, node: usize) -> [f64; 3] {
-        let values = self.stresses[node].symmetric_eigenvalues();
-        let mut sorted = [values[0], values[1], values[2]];
-        sorted.sort_by(|a, b| b.total_cmp(a));
-        sorted
+        principal_stresses(&self.stresses[node])
     }
 
     /// The surface of a crack, in triangles between its nodes.

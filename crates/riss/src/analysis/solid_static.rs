@@ -1,6 +1,7 @@
 //! Static analysis of a cracked solid by point collocation [C3D].
 
 use super::record::{Observer, Stage};
+use super::solid_boundary::boundary_fields;
 use super::solid_error_bars::{crack_length, widen_front_bars};
 use super::solid_front_discs::free_disc;
 use super::solid_guard_rails::inspect;
@@ -122,14 +123,28 @@ impl Solved {
 
     /// Stresses at points in the body that are on no surface [stress].
     pub fn stresses_at(&self, points: &[Vector3]) -> Result<Vec<Matrix<3>>> {
-        let one = |(fit, shape): &mut (FitBuffer<3>, ShapeFunctions<3>), p: &Vector3| {
-            self.placed.collocation.approximation.at_point(*p, *p, fit, shape)?;
-            let term =
-                |(k, i): (usize, &u32)| self.solution.displacements[*i as usize] * shape.gradients[k].transpose();
-            let gradient: Matrix<3> = shape.neighbors.iter().enumerate().map(term).sum();
-            Ok(stress(&self.placed.collocation.solid.material, &gradient))
-        };
+        let one =
+            |(fit, shape): &mut (FitBuffer<3>, ShapeFunctions<3>), p: &Vector3| Ok(self.at(*p, *p, fit, shape)?.1);
         points.par_iter().map_init(Default::default, one).collect()
+    }
+
+    /// Displacement [length] and stress [stress] at a point that is seen from `sight`.
+    pub fn at(
+        &self,
+        point: Vector3,
+        sight: Vector3,
+        fit: &mut FitBuffer<3>,
+        shape: &mut ShapeFunctions<3>,
+    ) -> Result<(Vector3, Matrix<3>)> {
+        let Collocation { approximation, solid, .. } = &self.placed.collocation;
+        approximation.at_point(point, sight, fit, shape)?;
+        let (mut value, mut gradient) = (Vector3::zeros(), Matrix::<3>::zeros());
+        for (k, i) in shape.neighbors.iter().enumerate() {
+            let u = self.solution.displacements[*i as usize];
+            value += u * shape.values[k];
+            gradient += u * shape.gradients[k].transpose();
+        }
+        Ok((value, stress(&solid.material, &gradient)))
     }
 
     /// Evaluates the fronts.
@@ -188,6 +203,7 @@ impl Solved {
         observer.stage(Stage::Fracture);
         let fronts = self.fronts(model, settings)?;
         observer.stage(Stage::Fields);
+        let boundary = boundary_fields(&self, model, &settings.spacing);
         let Self { placed, solution } = self;
         let gradients = placed.collocation.gradients(&solution.displacements)?;
         let cloud: Cloud<3> = placed.collocation.cloud().clone();
@@ -198,6 +214,7 @@ impl Solved {
             cloud,
             pairs: placed.pairs.clone(),
             opened_cracks: vec![],
+            boundary,
             fronts,
             effort: solution.effort,
             warnings: vec![],

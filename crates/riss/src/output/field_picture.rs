@@ -100,7 +100,7 @@ fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) ->
     svg.paths(outline.iter().cloned(), LineEnd::Closed, "fill=\"#bbbbbb\"");
     let values = quantity.values(fields);
     let surface = Surface::new(&pixels, &values, &fields.triangles);
-    let (low, high) = scale(&fields.positions, &fields.triangles, &values);
+    let (low, high) = scale(&fields.triangles, &values, |t| twice_area(&fields.positions, t));
     for band in 0..n_bands {
         let level = if band == 0 { f64::NEG_INFINITY } else { low + (high - low) * band as f64 / n_bands as f64 };
         let fill = format!("fill=\"{}\"", viridis((band as f64 + 0.5) / n_bands as f64));
@@ -118,12 +118,11 @@ fn draw(fields: &Fields, quantity: FieldQuantity, n_bands: usize, speck: i32) ->
     svg.finish()
 }
 
-/// Ends of the color scale; shares of the body are by area.
-pub(super) fn scale(positions: &[Vector2], triangles: &[[u32; 3]], values: &[f64]) -> (f64, f64) {
+/// Ends of the color scale; shares of the body are by area, which counts up to a factor.
+pub(super) fn scale(triangles: &[[u32; 3]], values: &[f64], area: impl Fn(&[u32; 3]) -> f64) -> (f64, f64) {
     let mut shares = vec![];
     for t in triangles {
-        let [a, b, c] = t.map(|v| positions[v as usize]);
-        let area = cross(b - a, c - a).abs();
+        let area = area(t);
         shares.extend(t.iter().map(|&v| (values[v as usize], area)).filter(|s| s.0.is_finite()));
     }
     shares.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -137,6 +136,12 @@ pub(super) fn scale(positions: &[Vector2], triangles: &[[u32; 3]], values: &[f64
         found.or(shares.last()).map_or(0.0, |s| s.0)
     };
     (quantile(BEYOND_SCALE), quantile(1.0 - BEYOND_SCALE))
+}
+
+/// Twice the area of a triangle.
+pub(super) fn twice_area(positions: &[Vector2], triangle: &[u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| positions[v as usize]);
+    cross(b - a, c - a).abs()
 }
 
 /// Draws the colors of a scale with numbers at the right side.

@@ -2,7 +2,7 @@
 
 use super::report::REPORT_FILE;
 use super::report::solid_scene::{Scenes, clear_scenes, scene_files, write_scene};
-use super::solid_files::{cracks_with, nodes};
+use super::solid_files::{boundary, cracks_with, nodes};
 use super::solid_report::solid_report;
 use super::solid_results::{LoadCurvePoint, SolidResults};
 use super::vtk::collection;
@@ -13,6 +13,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Kinds of files of a state.
+const KINDS: [&str; 3] = ["nodes", "boundary", "cracks"];
 /// Name of the load curve as a table.
 pub const LOAD_CURVE_FILE: &str = "load_curve.csv";
 
@@ -46,6 +48,7 @@ impl LoadingWriter {
     pub fn write_step(&mut self, step: &LoadingStep) -> io::Result<()> {
         write_scene(&self.dir, step.point, &step.model, &step.result)?;
         write_whole(&self.dir.join(file_name("nodes", step.point)), &nodes(&step.result))?;
+        write_whole(&self.dir.join(file_name("boundary", step.point)), &boundary(&step.result))?;
         let surfaces = cracks_with(&step.result, Some(&step.tractions));
         write_whole(&self.dir.join(file_name("cracks", step.point)), &surfaces)?;
         self.steps.push(step.point);
@@ -68,13 +71,13 @@ impl LoadingWriter {
     /// What the system says.
     pub fn finish(&self, mut results: SolidResults) -> io::Result<Vec<PathBuf>> {
         let mut files = vec![];
-        for kind in ["nodes", "cracks"] {
+        for kind in KINDS {
             let all: Vec<(usize, String)> = self.steps.iter().map(|s| (*s, file_name(kind, *s))).collect();
             files.push((format!("{kind}.pvd"), collection(&all)));
         }
         files.push((LOAD_CURVE_FILE.into(), table(&results.load_curve)?));
-        let kinds = ["nodes", "cracks"].into_iter();
-        results.files = kinds.flat_map(|kind| self.steps.iter().map(move |s| file_name(kind, *s))).collect();
+        results.files =
+            KINDS.into_iter().flat_map(|kind| self.steps.iter().map(move |s| file_name(kind, *s))).collect();
         results
             .files
             .extend(files.iter().map(|f| f.0.clone()).chain(scene_files(&self.dir)).chain([REPORT_FILE.to_string()]));

@@ -8,8 +8,8 @@ use super::solid_results::SolidResults;
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
 use super::whole_file::{write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
-use crate::analysis::SolidResult;
-use crate::math::Matrix;
+use crate::analysis::{BoundaryFields, SolidResult, principal_stresses};
+use crate::math::{Matrix, Vector3};
 use crate::model::SolidModel;
 use crate::nodes::cloud::{Cloud, Place, SurfaceId};
 use std::io;
@@ -45,6 +45,8 @@ pub fn write_solid_results(
     }
     let mut files = vec![("nodes-0000.vtu".to_string(), nodes(result))];
     files.push(("nodes.pvd".into(), collection(&[(0, "nodes-0000.vtu".into())])));
+    files.push(("boundary-0000.vtu".into(), boundary(result)));
+    files.push(("boundary.pvd".into(), collection(&[(0, "boundary-0000.vtu".into())])));
     if !model.cracks.is_empty() {
         files.push(("cracks-0000.vtu".into(), cracks(result)));
         files.push(("cracks.pvd".into(), collection(&[(0, "cracks-0000.vtu".into())])));
@@ -116,16 +118,30 @@ fn places(cloud: &Cloud<3>) -> Vec<Array> {
 }
 
 pub(super) fn nodes(result: &SolidResult) -> Vec<u8> {
-    let principal: Vec<[f64; 3]> = (0..result.n_nodes).map(|k| result.principal_stresses(k)).collect();
     let mut arrays = places(&result.cloud);
-    arrays.push(Array::spatial_vectors("displacement", result.displacements.iter().copied()));
-    arrays.push(Array::spatial_tensors("stress", result.stresses.iter().copied()));
-    arrays.push(Array::triples("principal stress", &["1", "2", "3"], principal));
-    arrays.push(Array::scalars("von Mises stress", result.stresses.iter().map(von_mises)));
+    push_fields(&mut arrays, &result.displacements, &result.stresses);
     spatial_grid(&result.cloud.positions, &vertices(result.n_nodes), &arrays, &[])
 }
 
-fn von_mises(stress: &Matrix<3>) -> f64 {
+/// The boundary of the body in triangles, with the fields there.
+pub(super) fn boundary(result: &SolidResult) -> Vec<u8> {
+    let BoundaryFields { positions, triangles, displacements, stresses } = &result.boundary;
+    let points = triangles.iter().flatten().copied().collect();
+    let cells = Cells { cell_type: CellType::Triangle, points, sizes: vec![3; triangles.len()] };
+    let mut arrays = vec![];
+    push_fields(&mut arrays, displacements, stresses);
+    spatial_grid(positions, &cells, &arrays, &[])
+}
+
+fn push_fields(arrays: &mut Vec<Array>, displacements: &[Vector3], stresses: &[Matrix<3>]) {
+    arrays.push(Array::spatial_vectors("displacement", displacements.iter().copied()));
+    arrays.push(Array::spatial_tensors("stress", stresses.iter().copied()));
+    arrays.push(Array::triples("principal stress", &["1", "2", "3"], stresses.iter().map(principal_stresses)));
+    arrays.push(Array::scalars("von Mises stress", stresses.iter().map(von_mises)));
+}
+
+/// Equivalent stress [stress].
+pub(super) fn von_mises(stress: &Matrix<3>) -> f64 {
     let deviator = stress - Matrix::from_diagonal_element(stress.trace() / 3.0);
     (1.5 * deviator.norm_squared()).sqrt()
 }

@@ -3,9 +3,9 @@
 //!
 //! What the user wrote is escaped, always.
 
-use super::color_map::viridis;
+use super::color_map::VIRIDIS;
 use super::report::solid_scene::Scenes;
-use super::report::{SOLID_SCRIPT, html, push_data};
+use super::report::{SOLID_VIEW, html, push_data, push_solid_script};
 use super::solid_results::{FrontPointResults, FrontResults, LoadCurvePoint, SolidResults};
 use std::fmt::Write;
 
@@ -23,10 +23,12 @@ svg { width: 100%; height: auto; } svg text { fill: var(--text); font-size: 12px
 svg .grid { stroke: var(--line); stroke-width: 1; } svg .line { fill: none; stroke-width: 2; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 14px; }
 th, td { padding: 3px 14px 3px 0; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+.view { position: relative; margin-top: 8px; } .axis { position: absolute; left: 0; top: 0; pointer-events: none; font-size: 13px; }
+[hidden] { display: none !important; }
 canvas { width: 100%; aspect-ratio: 1 / 0.62; touch-action: none; cursor: grab; border: 1px solid var(--line); border-radius: 6px; }
 .controls { display: flex; flex-wrap: wrap; gap: 8px 20px; align-items: center; margin-top: 8px; }
-.controls input { vertical-align: middle; } .scale { display: inline-block; width: 90px; height: 10px; }
-@media print { .controls, #view-status { display: none; } section { break-inside: avoid; } }
+.controls input { vertical-align: middle; } .scale { display: inline-block; width: 90px; height: 10px; print-color-adjust: exact; }
+@media print { button, input, select, #view-status, #view-keys { display: none; } section { break-inside: avoid; } }
 th { color: var(--quiet); } th:first-child, td:first-child { text-align: left; }
 ";
 
@@ -62,7 +64,9 @@ pub fn solid_report(results: &SolidResults, scenes: &Scenes) -> String {
     let title = html(&results.case);
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
+         style-src 'unsafe-inline'\">\n<title>{title}</title>\n\
          <style>{STYLE}</style>\n<h1>{title}</h1>\n<p class=\"quiet\">{}</p>\n",
         html(&summary(results))
     );
@@ -79,44 +83,21 @@ pub fn solid_report(results: &SolidResults, scenes: &Scenes) -> String {
     page
 }
 
-/// Colors of the opening.
-const N_COLORS: usize = 32;
-
 fn push_view(page: &mut String, scenes: &Scenes) {
-    if scenes.is_empty() {
-        return;
+    if !scenes.is_empty() {
+        page.push_str(SOLID_VIEW);
     }
-    let stops: Vec<String> = (0..5).map(|k| viridis(k as f64 / 4.0)).collect();
-    let _ = write!(
-        page,
-        "<section>\n<h2>Cracks</h2>\n\
-         <canvas id=\"view-canvas\" width=\"1000\" height=\"620\" tabindex=\"0\" role=\"img\" \
-         aria-label=\"the cracks in the body; arrow keys turn it, + and - zoom, 0 resets\"></canvas>\n\
-         <p class=\"quiet\" id=\"view-status\" aria-live=\"polite\">drag to turn, shift and drag to move, scroll to zoom; values \
-         are shown under the cursor</p>\n\
-         <div class=\"controls\"><span id=\"view-steps\"><button type=\"button\" id=\"view-play\">play</button> \
-         <label>step <input type=\"range\" id=\"view-step\" min=\"0\" max=\"0\" step=\"1\" value=\"0\"></label></span> \
-         <span id=\"view-label\"></span>\n\
-         <label>opening drawn <input type=\"range\" id=\"view-opening\" min=\"0\" max=\"4\" step=\"0.1\" value=\"1\"></label>\n\
-         <span><span class=\"scale\" style=\"background: linear-gradient(90deg, {})\"></span> <span id=\"view-legend\"></span></span>\n\
-         <button type=\"button\" id=\"view-reset\">reset</button> \
-         <button type=\"button\" id=\"view-whole\">whole body</button></div>\n</section>\n",
-        stops.join(", ")
-    );
 }
 
 fn push_script(page: &mut String, results: &SolidResults, scenes: &Scenes) {
     if scenes.is_empty() {
         return;
     }
-    let colors: Vec<String> = (0..N_COLORS).map(|k| viridis(k as f64 / (N_COLORS - 1) as f64)).collect();
-    let unit = |name: String| format!(" {name}");
-    let length = results.units.as_ref().map_or(String::new(), |u| unit(u.length.clone()));
-    let factor = results.units.as_ref().map_or(String::new(), |u| unit(u.stress_intensity()));
-    let view = serde_json::json!({ "colors": colors, "lengthUnit": length, "factorUnit": factor });
-    push_data(page, "view", &view.to_string());
+    push_data(page, "view", &serde_json::json!({ "viridis": VIRIDIS }).to_string());
+    push_data(page, "units", &serde_json::to_string(&results.units).unwrap_or_default());
     push_data(page, "scenes", &scenes.json(results));
-    let _ = write!(page, "<script>\n{SOLID_SCRIPT}</script>\n");
+    push_solid_script(page);
+    page.push_str("<p class=\"quiet\">The view is drawn with twgl.js 7.0.0, © 2019 Gregg Tavares, MIT licence.</p>\n");
 }
 
 fn summary(results: &SolidResults) -> String {

@@ -3,7 +3,7 @@
 use super::report::REPORT_FILE;
 use super::report::solid_scene::{Scenes, clear_scenes, scene_files, write_scene};
 use super::run_writer::{RESTART_FOLDER, restart_name};
-use super::solid_files::{cracks, nodes, read_solid_results};
+use super::solid_files::{boundary, cracks, nodes, read_solid_results};
 use super::solid_report::solid_report;
 use super::solid_results::{SolidResults, SolidStepResults};
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
@@ -16,7 +16,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Kinds of files of a step.
-const KINDS: [&str; 3] = ["nodes", "cracks", "surfaces"];
+const KINDS: [&str; 4] = ["nodes", "boundary", "cracks", "surfaces"];
 
 /// The folder of a run in which the cracks of a solid grow.
 #[derive(Clone, Debug)]
@@ -67,6 +67,7 @@ impl SolidWriter {
         self.steps.push(SolidStepResults::new(step));
         let mut files = vec![
             (file_name("nodes", step.step), nodes(&step.result)),
+            (file_name("boundary", step.step), boundary(&step.result)),
             (file_name("cracks", step.step), cracks(&step.result)),
             (file_name("surfaces", step.step), surfaces(&state.cracks)),
             (restart_name(step.step), serde_json::to_vec(state)?),

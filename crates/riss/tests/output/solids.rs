@@ -45,12 +45,13 @@ fn results_of_solids_come_back_as_they_were() {
     let dir = tempfile::tempdir().unwrap();
     let files = write_solid_results(dir.path(), &case.model, &info(), result).unwrap();
     let names: Vec<&str> = files.iter().map(|f| f.file_name().unwrap().to_str().unwrap()).collect();
-    let expected = ["nodes-0000.vtu", "nodes.pvd", "cracks-0000.vtu", "cracks.pvd", "report.html", "results.json"];
-    assert_eq!(names, expected);
-    let text = std::fs::read_to_string(&files[5]).unwrap();
+    let vtk = ["nodes-0000.vtu", "nodes.pvd", "boundary-0000.vtu", "boundary.pvd", "cracks-0000.vtu", "cracks.pvd"];
+    assert_eq!(names[..6], vtk);
+    assert_eq!(names[6..], ["report.html", "results.json"]);
+    let text = std::fs::read_to_string(&files[7]).unwrap();
     let read: SolidResults = serde_json::from_str(&text).unwrap();
-    assert_eq!(read.files[..4], names[..4]);
-    assert_eq!(read.files[4..], ["report/body.json", "report/scene_0000.json", "report.html"]);
+    assert_eq!(read.files[..6], names[..6]);
+    assert_eq!(read.files[6..], ["report/body.json", "report/scene_0000.json", "report.html"]);
     assert!(read.files.iter().all(|name| dir.path().join(name).is_file()));
     assert_eq!(read, SolidResults::new(&case.model, &info(), result, read.files.clone()));
     assert_eq!((read.nodes, read.unknowns), (result.n_nodes, 3 * result.n_nodes));
@@ -141,7 +142,7 @@ fn what_the_user_wrote_is_never_markup_in_reports_of_solids() {
     let results: Value = serde_json::from_str(&read("results.json")).unwrap();
     assert_eq!((&results["case"], &results["fronts"][0]["crack"]), (&ATTACK.into(), &ATTACK.into()));
     // Files for ParaView stay XML.
-    for name in ["cracks.pvd", "nodes.pvd"] {
+    for name in ["boundary.pvd", "cracks.pvd", "nodes.pvd"] {
         assert!(!read(name).contains("<img"));
     }
 }

@@ -1,7 +1,7 @@
 //! Triangulated surfaces: boundaries of bodies (closed) and cracks (open).
 //!
 //! Reading order: [`mesh`] (what was given), [`Surface`], [`orient`], [`patches`] (smooth pieces, edges and corners),
-//! [`query`] (distances, inside), [`makers`] (boxes, cylinders, balls).
+//! [`query`] (distances, inside), [`subdivide`] (smaller triangles), [`makers`] (boxes, cylinders, balls).
 
 pub mod makers;
 pub mod mesh;
@@ -9,6 +9,7 @@ mod orient;
 pub mod patches;
 pub mod query;
 pub mod shape;
+pub mod subdivide;
 #[cfg(test)]
 mod tests;
 

@@ -1,8 +1,9 @@
 //! `report.html`: one file that shows a run in any browser, without a network.
 //!
 //! Reading order: [`step_fields`] (what is kept of each step, as a file of its own), with `thinning` and `quantize` below
-//! it, for solids [`solid_scene`]; then this file, which puts page, script and data together. What the user wrote is escaped, always.
+//! it, for solids [`solid_scene`] with `boundary`; then this file, which puts page, script and data together. What the user wrote is escaped, always.
 
+mod boundary;
 mod quantize;
 pub mod solid_scene;
 mod step_fields;
@@ -49,6 +50,20 @@ const SCRIPT: [&str; 10] = [
 /// With its licence, which goes wherever the library goes.
 const CURVE_LIBRARY: [&str; 4] =
     ["/*\n", include_str!("vendor/uPlot.LICENSE"), "*/\n", include_str!("vendor/uPlot.iife.min.js")];
+
+/// The view of a solid, and its scripts in order.
+pub(super) const SOLID_VIEW: &str = include_str!("solid_view.html");
+const SOLID_SCRIPT: [&str; 7] = [
+    include_str!("js/format.js"),
+    include_str!("js/colors.js"),
+    include_str!("js/fields.js"),
+    include_str!("js/solid_fields.js"),
+    include_str!("js/solid_view.js"),
+    include_str!("js/solid.js"),
+    include_str!("js/solid_controls.js"),
+];
+const SPACE_LIBRARY: [&str; 4] =
+    ["/*\n", include_str!("vendor/twgl.LICENSE"), "*/\n", include_str!("vendor/twgl.iife.min.js")];
 
 /// What was run, for the reader of a report.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -176,8 +191,13 @@ fn choose(dir: &Path, steps: &[usize], most_bytes: u64) -> Vec<(usize, PathBuf)>
     kept
 }
 
-/// Script of the view of a solid.
-pub(super) const SOLID_SCRIPT: &str = include_str!("js/solid.js");
+/// Library and script of the view of a solid.
+pub(super) fn push_solid_script(page: &mut String) {
+    let [library, script] = [SPACE_LIBRARY.concat(), SOLID_SCRIPT.concat()];
+    page.push_str(&format!(
+        "<script>\n{library}</script>\n<script>\n\"use strict\";\n(() => {{\n{script}}})();\n</script>\n"
+    ));
+}
 
 /// A block of data that the browser does not run.
 pub(super) fn push_data(page: &mut String, id: &str, json: &str) {

@@ -1,8 +1,9 @@
-//! What the report of a solid draws of each step: cracks with their opening, as files of their own, and the edges of the body.
+//! What the report of a solid draws of each step: cracks with their opening and fields on the boundary, as files of their
+//! own, and the edges of the body.
 
 use super::super::solid_results::{FrontResults, SolidResults};
 use super::super::whole_file::write_whole;
-use super::{MOST_BYTES, REPORT_FOLDER};
+use super::{MOST_BYTES, REPORT_FOLDER, boundary};
 use crate::analysis::SolidResult;
 use crate::math::Vector3;
 use crate::model::SolidModel;
@@ -24,8 +25,8 @@ const DIGITS: usize = 5;
 pub struct Scenes {
     /// Ends of edges of the body, six numbers each.
     body: Vec<f64>,
-    /// Steps with their cracks.
-    steps: Vec<(usize, Vec<SceneCrack>)>,
+    /// Steps with what is drawn of them.
+    steps: Vec<(usize, StepScene)>,
 }
 
 /// Vertices and triangles.
@@ -48,11 +49,21 @@ struct SceneCrack {
     triangles: Vec<u32>,
 }
 
+/// A step as its file holds it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StepScene {
+    cracks: Vec<SceneCrack>,
+    /// Fields on the boundary.
+    boundary: serde_json::Value,
+}
+
 /// A step as the page holds it.
 #[derive(Serialize)]
 struct Scene<'a> {
     label: String,
     body: &'a [f64],
+    boundary: &'a serde_json::Value,
     cracks: Vec<SceneCrack>,
     fronts: &'a [FrontResults],
 }
@@ -75,9 +86,6 @@ pub(crate) fn write_scene(
     model: &SolidModel,
     result: &SolidResult,
 ) -> io::Result<Vec<String>> {
-    if result.opened_cracks.is_empty() {
-        return Ok(vec![]);
-    }
     fs::create_dir_all(dir.join(REPORT_FOLDER))?;
     let cracks: Vec<SceneCrack> = (result.opened_cracks.iter())
         .map(|opened| SceneCrack {
@@ -89,7 +97,8 @@ pub(crate) fn write_scene(
         })
         .collect();
     write_whole(&dir.join(body_name()), &serde_json::to_vec(&body_edges(model))?)?;
-    write_whole(&dir.join(step_name(step)), &serde_json::to_vec(&cracks)?)?;
+    let scene = StepScene { cracks, boundary: boundary::pack(&result.boundary)? };
+    write_whole(&dir.join(step_name(step)), &serde_json::to_vec(&scene)?)?;
     Ok(vec![body_name(), step_name(step)])
 }
 
@@ -147,7 +156,7 @@ impl Scenes {
 
     /// Vertices and triangles of all cracks of a step, or of the last.
     pub(crate) fn surfaces(&self, step: Option<usize>) -> Option<Vec<Triangulated>> {
-        let (_, cracks) = match step {
+        let (_, scene) = match step {
             None => self.steps.last(),
             Some(step) => self.steps.iter().find(|s| s.0 == step),
         }?;
@@ -155,7 +164,7 @@ impl Scenes {
             let vertices = c.points.chunks_exact(3).map(Vector3::from_column_slice).collect();
             (vertices, c.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect())
         };
-        Some(cracks.iter().map(surface).collect())
+        Some(scene.cracks.iter().map(surface).collect())
     }
 
     /// Whether there is nothing to draw.
@@ -163,32 +172,35 @@ impl Scenes {
         self.steps.is_empty()
     }
 
+    /// A step with what the results say of it; the edges of the body go with the first.
+    fn scene<'a>(&'a self, k: usize, results: &'a SolidResults) -> Scene<'a> {
+        let number = |v: Option<f64>| v.map_or("?".into(), |v| short(v).to_string());
+        let (number_of_step, StepScene { cracks, boundary }) = &self.steps[k];
+        let step = results.steps.iter().find(|s| s.step == *number_of_step);
+        let point = results.load_curve.get(*number_of_step);
+        let names: Vec<&String> = match step {
+            Some(step) => step.cracks.iter().map(|c| &c.name).collect(),
+            None => results.cracks.iter().map(|c| &c.name).collect(),
+        };
+        let label = match (step, point) {
+            (Some(step), _) => {
+                let area = step.cracks.iter().map(|c| c.area).sum();
+                format!("step {number_of_step}: crack area {}", number(area))
+            }
+            (None, Some(p)) => {
+                format!("step {number_of_step}: load {} at displacement {}", number(p.load), number(p.displacement))
+            }
+            (None, None) => String::new(),
+        };
+        let fronts = step.map_or(&results.fronts, |s| &s.fronts);
+        let named = |(crack, name): (&SceneCrack, &&String)| SceneCrack { name: (*name).clone(), ..crack.clone() };
+        let body = if k == 0 { &self.body[..] } else { &[] };
+        Scene { label, body, boundary, cracks: cracks.iter().zip(&names).map(named).collect(), fronts }
+    }
+
     /// The steps as JSON, with names, fronts and labels of the results.
     pub(crate) fn json(&self, results: &SolidResults) -> String {
-        let number = |v: Option<f64>| v.map_or("?".into(), |v| short(v).to_string());
-        let scene = |(k, (number_of_step, cracks)): (usize, &(usize, Vec<SceneCrack>))| {
-            let step = results.steps.iter().find(|s| s.step == *number_of_step);
-            let point = results.load_curve.get(*number_of_step);
-            let names: Vec<&String> = match step {
-                Some(step) => step.cracks.iter().map(|c| &c.name).collect(),
-                None => results.cracks.iter().map(|c| &c.name).collect(),
-            };
-            let label = match (step, point) {
-                (Some(step), _) => {
-                    let area = step.cracks.iter().map(|c| c.area).sum();
-                    format!("step {number_of_step}: crack area {}", number(area))
-                }
-                (None, Some(p)) => {
-                    format!("step {number_of_step}: load {} at displacement {}", number(p.load), number(p.displacement))
-                }
-                (None, None) => String::new(),
-            };
-            let fronts = step.map_or(&results.fronts, |s| &s.fronts);
-            let named = |(crack, name): (&SceneCrack, &&String)| SceneCrack { name: (*name).clone(), ..crack.clone() };
-            let body = if k == 0 { &self.body[..] } else { &[] };
-            Scene { label, body, cracks: cracks.iter().zip(&names).map(named).collect(), fronts }
-        };
-        let scenes: Vec<Scene> = self.steps.iter().enumerate().map(scene).collect();
+        let scenes: Vec<Scene> = (0..self.steps.len()).map(|k| self.scene(k, results)).collect();
         serde_json::to_string(&scenes).unwrap_or_default()
     }
 }

@@ -5,7 +5,7 @@ use super::thinning::{Mesh, N_FEATURES};
 use crate::analysis::{CrackFaces, Fields};
 use crate::geometry::aabb::Aabb;
 use crate::math::Vector2;
-use crate::output::field_picture::scale;
+use crate::output::field_picture::{scale, twice_area};
 use crate::output::fields::principal_stresses;
 use crate::output::vtk::push_base64;
 use serde::Serialize;
@@ -18,7 +18,7 @@ const COARSE: usize = 6_000;
 /// The color scale needs no more triangles than these.
 const SAMPLED_TRIANGLES: usize = 20_000;
 /// Effort of compression: the report is read more often than written.
-const COMPRESSION: u8 = 7;
+pub(super) const COMPRESSION: u8 = 7;
 /// Out-of-plane stress is not stored if it follows from the others to this share of the greatest.
 const SAME: f64 = 1e-9;
 
@@ -152,7 +152,12 @@ fn in_order(positions: &[Vector2], mut triangles: Vec<[u32; 3]>) -> (Vec<[u32; 3
         let middle = t.iter().map(|v| positions[*v as usize] - bounds.lower).sum::<Vector2>() / 3.0;
         spread((middle.x * to_grid) as u32) | spread((middle.y * to_grid) as u32) << 1
     });
-    let mut new = vec![u32::MAX; positions.len()];
+    numbered(positions.len(), triangles)
+}
+
+/// Triangles with their vertices numbered in the order in which they name them, and the old number of each.
+pub(super) fn numbered(n_vertices: usize, mut triangles: Vec<[u32; 3]>) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut new = vec![u32::MAX; n_vertices];
     let mut old = vec![];
     for vertex in triangles.iter_mut().flatten() {
         let number = &mut new[*vertex as usize];
@@ -222,7 +227,7 @@ fn ranges(fields: &Fields) -> BTreeMap<&'static str, [f64; 4]> {
         ("error_indicator", fields.error_indicator.clone()),
     ];
     let range = |values: &[f64]| {
-        let (low, high) = scale(&fields.positions, &sample, values);
+        let (low, high) = scale(&sample, values, |t| twice_area(&fields.positions, t));
         let finite = || values.iter().copied().filter(|v| v.is_finite());
         let [least, greatest] = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
         [low, high, if least.is_finite() { least } else { 0.0 }, if greatest.is_finite() { greatest } else { 0.0 }]
