@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
-/// Format, clippy, tests (tidy and doc tests among them), documentation, instructions, the Python package; stops at the first failure.
+/// Format, clippy, tests (tidy and doc tests among them), documentation, tutorials, instructions, the Python package; stops at the first failure.
 pub fn run_all() -> Outcome {
     step("format", || run(&mut cargo(&["fmt", "--all", "--check"])))?;
     step("tidy", crate::tidy::run)?;
@@ -14,6 +14,7 @@ pub fn run_all() -> Outcome {
     let mut results = vec![];
     step("tests", || run_tests(&mut results))?;
     step("documentation", run_rustdoc)?;
+    step("tutorials", || crate::walk::run(&crate::build_riss()?, crate::walk::Mode::Check))?;
     match crate::instructions::can_count() {
         true => step("instructions", || crate::instructions::run(crate::instructions::Counts::Check))?,
         false => println!("== instructions are not counted: valgrind is not installed"),

@@ -1,6 +1,6 @@
 //! `cargo xtask docs`: the generated pages of the book, and the book itself.
 
-use crate::{Outcome, build_riss, gallery, reference, root};
+use crate::{Outcome, build_riss, gallery, reference, root, walk};
 use std::process::Command;
 
 /// A page about the keys of a case file.
@@ -44,7 +44,7 @@ schema behind this page. How to use them is told in [Solve a cracked solid](../h
 /// The page of all cases, from the root of the workspace.
 pub const GALLERY_PAGE: &str = "docs/src/reference/gallery.md";
 
-/// Writes the references of case files from `riss schema`, and the gallery; builds the book if `mdbook` is installed.
+/// Writes the references of case files from `riss schema`, the gallery, and what tutorials print; builds the book if `mdbook` is installed.
 pub fn run() -> Outcome {
     let riss = build_riss()?;
     for page in &CASE_FILE_PAGES {
@@ -58,6 +58,7 @@ pub fn run() -> Outcome {
     let path = root().join(GALLERY_PAGE);
     std::fs::write(&path, gallery::page(&root())?).map_err(|e| format!("{}: {e}", path.display()))?;
     println!("wrote {GALLERY_PAGE}");
+    walk::run(&riss, walk::Mode::Update)?;
     match Command::new("mdbook").arg("build").arg(root().join("docs")).status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("mdbook ended with {status}")),

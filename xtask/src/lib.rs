@@ -16,6 +16,7 @@ pub mod python;
 pub mod reference;
 pub mod tidy;
 pub mod verify;
+pub mod walk;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -67,8 +67,12 @@ fn describe(model: &Model) -> String {
     let mut text = String::new();
     text += &line("case", model.title.clone());
     let domain = &model.domain;
-    let holes = domain.loops.len() - 1;
-    text += &line("body", format!("area {}, {} edges, {holes} holes", number(domain.area()), domain.edges.len()));
+    let holes = match domain.loops.len() - 1 {
+        0 => "no holes".to_string(),
+        1 => "1 hole".into(),
+        n => format!("{n} holes"),
+    };
+    text += &line("body", format!("area {}, {} edges, {holes}", number(domain.area()), domain.edges.len()));
     let parts: Vec<&str> = domain.parts.iter().map(|p| p.name.as_str()).collect();
     text += &line("parts", parts.join(", "));
     for crack in &model.cracks {
