@@ -210,15 +210,14 @@ impl<const D: usize> ConstrainedMls<D> {
         neighbors: &[(f64, u32)],
         fit: &mut LeastSquares<D>,
     ) -> Rank {
-        let weight = self.settings.weight;
-        fit.start(radius, neighbors.iter().map(|n| weight.root(n.0.sqrt() / radius)));
         let has_constant = !center.is_constrained();
+        let n_columns = usize::from(has_constant) + self.basis.len() + n_front_functions::<D>();
+        fit.start(radius, self.settings.weight, neighbors.iter().map(|n| n.0 / (radius * radius)), n_columns);
         if has_constant {
             fit.add_constant();
         }
-        fit.add_columns(&self.columns, neighbors, |j, values| {
-            self.basis.values_into(&((self.cloud().positions[j as usize] - at) / radius), values);
-        });
+        let offsets = neighbors.iter().map(|n| (self.cloud().positions[n.1 as usize] - at) / radius);
+        fit.add_monomials(self.basis.factors(), &self.columns, offsets);
         let n_leading = self.n_needed();
         let kept_constant = !has_constant || fit.orthogonalize(1, DEPENDENT) == 1;
         let kept = fit.orthogonalize(n_leading, DEPENDENT);
@@ -262,7 +261,7 @@ impl<const D: usize> ConstrainedMls<D> {
             let second_derivatives = (mixed + mixed.transpose()) * slope;
             Column { value: 0.0, gradient: tangent * (jet.value * scale), second_derivatives }
         });
-        let count = if D == 3 { 2 * MOST_FUNCTIONS } else { MOST_FUNCTIONS };
+        let count = n_front_functions::<D>();
         fit.add_columns(&columns[..count], neighbors, |j, values| {
             let place = self.cloud().positions[j as usize];
             let f = frame.values(place, self.angles[front][j as usize]);
@@ -296,7 +295,7 @@ impl<const D: usize> ConstrainedMls<D> {
             shape.gradients.push(Vector::zeros());
             shape.second_derivatives.push(Matrix::zeros());
         }
-        fit.solve();
+        fit.solve(!is_node);
         for (i, n) in neighbors.iter().enumerate() {
             let row = fit.row(i);
             shape.neighbors.push(n.1);
@@ -319,6 +318,11 @@ struct Rank {
     n_leading: usize,
 }
 
+/// Number of functions near a front; in space there are also those times the length along it.
+const fn n_front_functions<const D: usize>() -> usize {
+    if D == 3 { 2 * MOST_FUNCTIONS } else { MOST_FUNCTIONS }
+}
+
 /// Nodes of a support for `l` terms: 7.89 L in space [C3D, after Eq. 12]; in the plane 4.44 L reach as far.
 fn default_neighbors<const D: usize>(l: usize) -> usize {
     let ratio = if D == 2 { 4.44 } else { 7.89 };
@@ -326,12 +330,13 @@ fn default_neighbors<const D: usize>(l: usize) -> usize {
 }
 
 impl CollocationWeight {
-    /// Square root of the weight at a relative distance from 0 to 1.
-    #[inline]
-    pub fn root(self, s: f64) -> f64 {
+    /// Replaces squared relative distances, from 0 to 1, by the square roots of the weights there.
+    pub(super) fn to_roots(self, squares: &mut [f64]) {
         match self {
-            Self::NonSmooth => 1.0 - s.sqrt(),
-            Self::Smooth(function) => function.value_and_slope(s * s).0.max(0.0).sqrt(),
+            Self::NonSmooth => squares.iter_mut().for_each(|s| *s = 1.0 - s.sqrt().sqrt()),
+            Self::Smooth(function) => {
+                squares.iter_mut().for_each(|s| *s = function.value_and_slope(*s).0.max(0.0).sqrt());
+            }
         }
     }
 }

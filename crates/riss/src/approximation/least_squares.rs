@@ -1,8 +1,11 @@
 //! Weighted least squares by orthogonal columns, in memory that is reused.
 //!
 //! Modified Gram-Schmidt on the weighted columns loses digits with their condition, a factored moment matrix with its
-//! square; the enriched basis needs the difference. Dependent columns are found and left out.
+//! square; the enriched basis needs the difference. Dependent columns are found and left out. A column that is done is
+//! taken out of all later ones at once, many in registers, and no column is normalized.
 
+use super::orthogonal_columns::{LINES, NARROW, clean, parts, squared_length, subtract, write_some};
+use super::settings::CollocationWeight;
 use crate::math::lanes::{Arch, GROUP, Lanes, Simd, WithSimd};
 use crate::math::{Matrix, Vector};
 
@@ -22,6 +25,21 @@ impl<const D: usize> Column<D> {
     pub fn zero() -> Self {
         Self { value: 0.0, gradient: Vector::zeros(), second_derivatives: Matrix::zeros() }
     }
+
+    /// Gradient, second derivatives `a ≤ b` rows first, value.
+    fn lines(&self) -> [f64; LINES] {
+        let mut lines = [0.0; LINES];
+        lines[..D].copy_from_slice(self.gradient.as_slice());
+        let mut d = D;
+        for a in 0..D {
+            for b in a..D {
+                lines[d] = self.second_derivatives[(a, b)];
+                d += 1;
+            }
+        }
+        lines[d] = self.value;
+        lines
+    }
 }
 
 /// A fit: neighbors are rows, functions of the basis columns.
@@ -29,40 +47,82 @@ impl<const D: usize> Column<D> {
 pub struct LeastSquares<const D: usize> {
     radius: f64,
     n_rows: usize,
-    stride: usize,
     roots: Vec<f64>,
-    /// Weighted values, made orthonormal from the left; column by column.
+    /// Scaled offsets of the neighbors, axis by axis.
+    offsets: Vec<f64>,
+    /// Weighted values, made orthogonal from the left: [`GROUP`] rows of the first column, of the second, up to
+    /// `pitch`; then the next rows. What is beyond the last column means nothing.
     values: Vec<f64>,
-    derivatives: Vec<Column<D>>,
-    /// Factor R by columns, its first k + 1 entries; zero on the diagonal for a column that is left out.
+    pitch: usize,
+    derivatives: Vec<[f64; LINES]>,
+    /// Squared length of each column as it was given, and of what is left of it; that is zero if it is left out.
+    lengths: Vec<f64>,
+    sizes: Vec<f64>,
+    /// Shares of the orthogonal columns in those after them, `pitch` for each; one on the diagonal.
     upper: Vec<f64>,
     n_orthogonal: usize,
-    /// Coefficients of the derivatives in the orthonormal columns.
-    coefficients: Vec<f64>,
+    /// Coefficients of the derivatives in the orthogonal columns.
+    coefficients: Vec<[f64; LINES]>,
     /// Derivatives by the values of the neighbors: one line each.
     lines: Vec<f64>,
     scratch: Vec<f64>,
 }
 
 impl<const D: usize> LeastSquares<D> {
-    /// Begins a fit with the square roots of the weights.
-    pub fn start(&mut self, radius: f64, roots: impl Iterator<Item = f64>) {
+    /// Begins a fit of no more than `n_columns`.
+    ///
+    /// - `relative`: squared distances of the neighbors over the squared support radius
+    pub fn start(
+        &mut self,
+        radius: f64,
+        weight: CollocationWeight,
+        relative: impl Iterator<Item = f64>,
+        n_columns: usize,
+    ) {
         self.roots.clear();
-        self.roots.extend(roots);
+        self.roots.extend(relative);
+        weight.to_roots(&mut self.roots);
         self.radius = radius;
         self.n_rows = self.roots.len();
-        self.stride = self.n_rows.next_multiple_of(GROUP);
-        self.roots.resize(self.stride, 0.0);
-        self.values.clear();
+        // Rows without weight fill the last group.
+        let stride = self.n_rows.next_multiple_of(GROUP);
+        self.roots.resize(stride, 0.0);
+        self.offsets.resize(D * stride, 0.0);
+        self.pitch = n_columns + NARROW - 1;
+        self.values.resize(self.pitch * stride, 0.0);
+        self.upper.resize(self.pitch * n_columns, 0.0);
         self.derivatives.clear();
-        self.upper.clear();
+        self.lengths.clear();
+        self.sizes.clear();
         self.n_orthogonal = 0;
     }
 
     /// Adds the function one.
     pub fn add_constant(&mut self) {
-        self.values.extend_from_slice(&self.roots);
-        self.derivatives.push(Column { value: 1.0, gradient: Vector::zeros(), second_derivatives: Matrix::zeros() });
+        let rows = self.values.chunks_exact_mut(GROUP * self.pitch);
+        for (row, roots) in rows.zip(self.roots.chunks_exact(GROUP)) {
+            row[..GROUP].copy_from_slice(roots);
+        }
+        self.added(&[Column { value: 1.0, ..Column::zero() }]);
+    }
+
+    /// Adds monomials of the offsets of the neighbors [support radii].
+    ///
+    /// - `factors`: each monomial as an earlier one (none for degree 1) times a coordinate
+    pub fn add_monomials(
+        &mut self,
+        factors: &[(Option<usize>, usize)],
+        columns: &[Column<D>],
+        offsets: impl Iterator<Item = Vector<D>>,
+    ) {
+        let stride = self.roots.len();
+        for (i, offset) in offsets.enumerate() {
+            for d in 0..D {
+                self.offsets[d * stride + i] = offset[d];
+            }
+        }
+        Arch::new().dispatch(FillMonomials { fit: self, factors });
+        self.added(columns);
     }
 
     /// Adds functions; `fill` writes their values at a neighbor.
@@ -72,67 +132,115 @@ impl<const D: usize> LeastSquares<D> {
         neighbors: &[(f64, u32)],
         mut fill: impl FnMut(u32, &mut [f64]),
     ) {
-        let (start, stride) = (self.values.len(), self.stride);
-        self.values.resize(start + columns.len() * stride, 0.0);
+        let first = self.derivatives.len();
         self.scratch.resize(columns.len(), 0.0);
-        for (i, n) in neighbors.iter().enumerate() {
-            fill(n.1, &mut self.scratch);
-            for (k, v) in self.scratch.iter().enumerate() {
-                self.values[start + k * stride + i] = v * self.roots[i];
+        for i in 0..self.roots.len() {
+            match neighbors.get(i) {
+                Some(n) => fill(n.1, &mut self.scratch),
+                None => self.scratch.fill(0.0),
+            }
+            let start = (i / GROUP * self.pitch + first) * GROUP + i % GROUP;
+            for (v, value) in self.values[start..].iter_mut().step_by(GROUP).zip(&self.scratch) {
+                *v = value * self.roots[i];
             }
         }
-        self.derivatives.extend_from_slice(columns);
+        self.added(columns);
+    }
+
+    /// Takes what is orthogonal already out of columns that were filled.
+    fn added(&mut self, columns: &[Column<D>]) {
+        let first = self.derivatives.len();
+        self.derivatives.extend(columns.iter().map(Column::lines));
+        let n = self.derivatives.len();
+        debug_assert!(n + NARROW - 1 <= self.pitch);
+        self.lengths.resize(n, 0.0);
+        self.sizes.resize(n, 0.0);
+        Arch::new().dispatch(CatchUp { fit: self, first });
     }
 
     /// Makes the next `count` columns orthogonal to those before; returns how many are independent.
     pub fn orthogonalize(&mut self, count: usize, tolerance: f64) -> usize {
-        self.run(count, tolerance, 1)
+        Arch::new().dispatch(Orthogonalize { fit: self, count, tolerance, is_twice: false })
     }
 
     /// The same with a second pass, for columns of which little is left.
     pub fn orthogonalize_twice(&mut self, count: usize, tolerance: f64) -> usize {
-        self.run(count, tolerance, 2)
+        Arch::new().dispatch(Orthogonalize { fit: self, count, tolerance, is_twice: true })
     }
 
-    fn run(&mut self, count: usize, tolerance: f64, passes: usize) -> usize {
-        Arch::new().dispatch(Orthogonalize { fit: self, count, tolerance, passes })
+    /// Derivatives of the fit by the values of the neighbors, and with `has_values` the values too.
+    pub fn solve(&mut self, has_values: bool) {
+        let n_lines = D + D * (D + 1) / 2;
+        self.lines.resize((n_lines + 1) * self.roots.len(), 0.0);
+        Arch::new().dispatch(WriteLines { fit: self, n_lines: n_lines + usize::from(has_values) });
     }
 
-    /// Derivatives of the fit by the values of the neighbors.
-    pub fn solve(&mut self) {
-        let (n, m) = (self.n_orthogonal, 1 + D + D * D);
-        self.coefficients.clear();
-        self.coefficients.resize(n * m, 0.0);
-        // Forward substitution with Rᵀ, all derivatives at once.
-        let mut start = 0;
-        for k in 0..n {
-            let column = &self.derivatives[k];
-            let (done, rest) = self.coefficients.split_at_mut(k * m);
-            let own = &mut rest[..m];
-            let pivot = self.upper[start + k];
-            if pivot > 0.0 {
-                own[0] = column.value;
-                own[1..=D].copy_from_slice(column.gradient.as_slice());
-                own[1 + D..].copy_from_slice(column.second_derivatives.as_slice());
-                for (r, earlier) in self.upper[start..start + k].iter().zip(done.chunks_exact(m)) {
-                    own.iter_mut().zip(earlier).for_each(|(o, e)| *o -= r * e);
-                }
-                own.iter_mut().for_each(|o| *o /= pivot);
-            }
-            start += k + 1;
-        }
-        Arch::new().dispatch(WriteLines(self));
-    }
-
-    /// Value and derivatives by the value of neighbor `i`, after [`Self::solve`].
+    /// Value, if it was solved for, and derivatives by the value of neighbor `i`, after [`Self::solve`].
     #[inline]
     pub fn row(&self, i: usize) -> Column<D> {
-        let line = |d: usize| self.lines[d * self.stride + i];
-        let inverse = 1.0 / self.radius;
+        let line = |d: usize| self.lines[d * self.roots.len() + i];
+        let second = |a: usize, b: usize| line(D + a * (2 * D - a - 1) / 2 + b);
         Column {
-            value: line(0),
-            gradient: Vector::from_fn(|a, _| line(1 + a) * inverse),
-            second_derivatives: Matrix::from_fn(|a, b| line(1 + D + a.min(b) * D + a.max(b)) * inverse * inverse),
+            value: line(D + D * (D + 1) / 2),
+            gradient: Vector::from_fn(|a, _| line(a)),
+            second_derivatives: Matrix::from_fn(|a, b| second(a.min(b), a.max(b))),
+        }
+    }
+}
+
+struct FillMonomials<'a, const D: usize> {
+    fit: &'a mut LeastSquares<D>,
+    factors: &'a [(Option<usize>, usize)],
+}
+
+impl<const D: usize> WithSimd for FillMonomials<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { fit, factors } = self;
+        let (first, parts) = (fit.derivatives.len(), parts::<S>());
+        let roots = S::as_simd_f64s(&fit.roots).0;
+        let offsets = S::as_simd_f64s(&fit.offsets).0;
+        let rows = S::as_mut_simd_f64s(&mut fit.values).0.chunks_exact_mut(parts * fit.pitch);
+        for (g, row) in rows.enumerate() {
+            let row = &mut row[first * parts..];
+            for u in 0..parts {
+                let at = g * parts + u;
+                for (k, &(parent, axis)) in factors.iter().enumerate() {
+                    let before = match parent {
+                        None => roots[at],
+                        Some(p) => row[p * parts + u],
+                    };
+                    let x = offsets[axis * roots.len() + at];
+                    row[k * parts + u] = (Lanes::new(simd, before) * Lanes::new(simd, x)).get();
+                }
+            }
+        }
+    }
+}
+
+struct CatchUp<'a, const D: usize> {
+    fit: &'a mut LeastSquares<D>,
+    first: usize,
+}
+
+impl<const D: usize> WithSimd for CatchUp<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { fit, first } = self;
+        let n = fit.derivatives.len();
+        let values = S::as_mut_simd_f64s(&mut fit.values).0;
+        for k in first..n {
+            fit.lengths[k] = squared_length(simd, values, fit.pitch, k);
+        }
+        for k in 0..fit.n_orthogonal {
+            if fit.sizes[k] > 0.0 {
+                let shares = &mut fit.upper[k * fit.pitch..][..fit.pitch];
+                subtract(simd, values, fit.pitch, k, fit.sizes[k], shares, first, n);
+            }
         }
     }
 }
@@ -141,7 +249,7 @@ struct Orthogonalize<'a, const D: usize> {
     fit: &'a mut LeastSquares<D>,
     count: usize,
     tolerance: f64,
-    passes: usize,
+    is_twice: bool,
 }
 
 impl<const D: usize> WithSimd for Orthogonalize<'_, D> {
@@ -149,33 +257,22 @@ impl<const D: usize> WithSimd for Orthogonalize<'_, D> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> usize {
-        let Self { fit, count, tolerance, passes } = self;
-        let stride = fit.stride;
+        let Self { fit, count, tolerance, is_twice } = self;
+        let (n, pitch) = (fit.derivatives.len(), fit.pitch);
+        let values = S::as_mut_simd_f64s(&mut fit.values).0;
         let mut n_independent = 0;
         for k in fit.n_orthogonal..fit.n_orthogonal + count {
-            let (before, rest) = fit.values.split_at_mut(k * stride);
-            let column = &mut rest[..stride];
-            let length = dot(simd, column, column).sqrt();
-            let start = fit.upper.len();
-            fit.upper.resize(start + k + 1, 0.0);
-            for _ in 0..passes {
-                for (j, earlier) in before.chunks_exact(stride).enumerate() {
-                    // Columns that are left out are zero.
-                    let r = dot(simd, earlier, column);
-                    fit.upper[start + j] += r;
-                    add(simd, column, -r, earlier);
+            if is_twice {
+                for first in (0..k).step_by(NARROW) {
+                    clean(simd, values, pitch, k, first, &fit.sizes, &mut fit.upper);
                 }
             }
-            let left = dot(simd, column, column).sqrt();
+            let left = squared_length(simd, values, pitch, k);
             // Written so that NaN fails too.
-            if left > tolerance * length {
-                fit.upper[start + k] = left;
-                for v in column.iter_mut() {
-                    *v /= left;
-                }
+            if left > tolerance * tolerance * fit.lengths[k] {
+                fit.sizes[k] = left;
                 n_independent += 1;
-            } else {
-                column.fill(0.0);
+                subtract(simd, values, pitch, k, left, &mut fit.upper[k * pitch..][..pitch], k + 1, n);
             }
         }
         fit.n_orthogonal += count;
@@ -183,57 +280,61 @@ impl<const D: usize> WithSimd for Orthogonalize<'_, D> {
     }
 }
 
-/// Combines the orthonormal columns to the derivatives by the values of the neighbors.
-struct WriteLines<'a, const D: usize>(&'a mut LeastSquares<D>);
+/// Combines the orthogonal columns to the derivatives by the values of the neighbors.
+struct WriteLines<'a, const D: usize> {
+    fit: &'a mut LeastSquares<D>,
+    n_lines: usize,
+}
 
 impl<const D: usize> WithSimd for WriteLines<'_, D> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self(fit) = self;
-        let (n, m, stride) = (fit.n_orthogonal, 1 + D + D * D, fit.stride);
-        fit.lines.clear();
-        fit.lines.resize(m * stride, 0.0);
-        for (d, line) in fit.lines.chunks_exact_mut(stride).enumerate() {
-            // Second derivatives are symmetric: the lower ones are copied.
-            if d > D && (d - 1 - D) / D > (d - 1 - D) % D {
-                continue;
-            }
-            for (k, column) in fit.values.chunks_exact(stride).take(n).enumerate() {
-                add(simd, line, fit.coefficients[k * m + d], column);
-            }
-            for (l, root) in line.iter_mut().zip(&fit.roots) {
-                *l *= root;
-            }
+        let Self { fit, n_lines } = self;
+        substitute(simd, fit, n_lines);
+        let roots = S::as_simd_f64s(&fit.roots).0;
+        let values = S::as_simd_f64s(&fit.values).0;
+        let lines = S::as_mut_simd_f64s(&mut fit.lines).0;
+        let mut first = 0;
+        while first + 3 <= n_lines {
+            write_some::<S, 3>(simd, &fit.coefficients, values, fit.pitch, roots, lines, first);
+            first += 3;
+        }
+        while first < n_lines {
+            write_some::<S, 1>(simd, &fit.coefficients, values, fit.pitch, roots, lines, first);
+            first += 1;
         }
     }
 }
 
-/// Scalar product of lists whose lengths are multiples of [`GROUP`].
+/// Coefficients of the first `n_lines` derivatives: forward substitution with the transpose of `upper`, all at once.
 #[inline(always)]
-fn dot<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (S::as_simd_f64s(a).0, S::as_simd_f64s(b).0);
-    // Several sums, for an addition takes longer than the next one needs to start.
-    let mut sums = [Lanes::splat(simd, 0.0); 4];
-    let (a_parts, a_rest) = a.as_chunks::<4>();
-    let (b_parts, b_rest) = b.as_chunks::<4>();
-    for (a, b) in a_parts.iter().zip(b_parts) {
-        for l in 0..4 {
-            sums[l] = Lanes::new(simd, a[l]).mul_add(Lanes::new(simd, b[l]), sums[l]);
+fn substitute<S: Simd, const D: usize>(simd: S, fit: &mut LeastSquares<D>, n_lines: usize) {
+    let n = fit.n_orthogonal;
+    fit.coefficients.clear();
+    fit.coefficients.extend_from_slice(&fit.derivatives[..n]);
+    let n_vectors = n_lines.div_ceil(S::F64_LANES);
+    let inverse = 1.0 / fit.radius;
+    for k in 0..n {
+        let (done, rest) = fit.coefficients.split_at_mut(k + 1);
+        let own = &mut done[k];
+        if fit.sizes[k] > 0.0 {
+            let shares = &fit.upper[k * fit.pitch..][k + 1..n];
+            for (other, share) in rest.iter_mut().zip(shares) {
+                let share = Lanes::splat(simd, -share);
+                let (own, other) = (S::as_simd_f64s(own).0, S::as_mut_simd_f64s(other).0);
+                for (o, v) in other[..n_vectors].iter_mut().zip(&own[..n_vectors]) {
+                    *o = share.mul_add(Lanes::new(simd, *v), Lanes::new(simd, *o)).get();
+                }
+            }
+            let factor = 1.0 / fit.sizes[k];
+            let n_second = D * (D + 1) / 2;
+            own[..D].iter_mut().for_each(|v| *v *= factor * inverse);
+            own[D..D + n_second].iter_mut().for_each(|v| *v *= factor * inverse * inverse);
+            own[D + n_second] *= factor;
+        } else {
+            own.fill(0.0);
         }
-    }
-    for (a, b) in a_rest.iter().zip(b_rest) {
-        sums[0] = Lanes::new(simd, *a).mul_add(Lanes::new(simd, *b), sums[0]);
-    }
-    ((sums[0] + sums[1]) + (sums[2] + sums[3])).sum()
-}
-
-/// Adds `factor x` to `y`.
-#[inline(always)]
-fn add<S: Simd>(simd: S, y: &mut [f64], factor: f64, x: &[f64]) {
-    let factor = Lanes::splat(simd, factor);
-    for (y, x) in S::as_mut_simd_f64s(y).0.iter_mut().zip(S::as_simd_f64s(x).0) {
-        *y = Lanes::new(simd, *x).mul_add(factor, Lanes::new(simd, *y)).get();
     }
 }

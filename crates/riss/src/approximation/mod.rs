@@ -21,6 +21,7 @@ mod lane_fit;
 mod least_squares;
 pub mod mls;
 pub mod moving_least_squares;
+mod orthogonal_columns;
 mod partition_of_unity;
 pub mod point_batch;
 mod region_size;

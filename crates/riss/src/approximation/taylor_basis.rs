@@ -49,12 +49,9 @@ impl<const D: usize> TaylorBasis<D> {
         self.factors.is_empty()
     }
 
-    /// Values at `x`, into the first [`Self::len`] entries.
-    #[inline]
-    pub fn values_into(&self, x: &Vector<D>, values: &mut [f64]) {
-        for (k, &(parent, axis)) in self.factors.iter().enumerate() {
-            values[k] = parent.map_or(1.0, |p| values[p]) * x[axis];
-        }
+    /// Each monomial as an earlier one (none for degree 1) times a coordinate.
+    pub fn factors(&self) -> &[(Option<usize>, usize)] {
+        &self.factors
     }
 
     /// Derivatives of monomial `k` at the origin: gradient and second derivatives.
@@ -96,8 +93,10 @@ mod tests {
     fn monomials_are_distinct_and_complete() {
         let basis = TaylorBasis::<3>::new(3);
         let x = Vector::<3>::new(2.0, 3.0, 5.0);
-        let mut values = vec![0.0; basis.len()];
-        basis.values_into(&x, &mut values);
+        let mut values: Vec<f64> = vec![];
+        for &(parent, axis) in basis.factors() {
+            values.push(parent.map_or(1.0, |p| values[p]) * x[axis]);
+        }
         let mut expected = vec![];
         for (i, j, k) in (0..64).map(|n| (n / 16, n / 4 % 4, n % 4)).filter(|t| (1..=3).contains(&(t.0 + t.1 + t.2))) {
             expected.push(2f64.powi(i) * 3f64.powi(j) * 5f64.powi(k));
