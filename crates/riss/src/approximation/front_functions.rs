@@ -102,7 +102,7 @@ impl<const D: usize> FrontFrame<D> {
     #[inline]
     pub fn polar(&self, at: Vector<D>, near: f64) -> [f64; 2] {
         let [x, y] = self.plane(at);
-        [x.hypot(y), on_sheet(y.atan2(x), near)]
+        [(x * x + y * y).sqrt(), on_sheet(y.atan2(x), near)]
     }
 
     /// Values of the four functions [√length].

@@ -36,7 +36,8 @@ impl TipFunctions {
         match self {
             Self::Full => {
                 let (s, c) = (0.5 * theta).sin_cos();
-                let (s3, c3) = (1.5 * theta).sin_cos();
+                // sin 3θ/2 and cos 3θ/2.
+                let (s3, c3) = (s * (3.0 - 4.0 * s * s), c * (4.0 * c * c - 3.0));
                 // sin θ/2 sin θ = (cos θ/2 - cos 3θ/2)/2, cos θ/2 sin θ = (sin θ/2 + sin 3θ/2)/2.
                 [
                     [c, -0.5 * s, -0.25 * c],
