@@ -4,9 +4,8 @@ use super::recovery::{Buffer, RecoveredStress, SingularStress};
 use crate::error::Result;
 use crate::integration::cells::as_usize;
 use crate::material::Elasticity;
-use crate::math::Vector2;
+use crate::math::{Matrix2, Vector2};
 use crate::model::Model;
-use crate::system::galerkin::{Fields, Scratch, cell_displacement_gradient, cell_functions};
 use crate::system::{Discretization, Solution};
 use rayon::prelude::*;
 
@@ -30,17 +29,22 @@ impl ErrorEstimate {
 
 /// Compares the stress of a solution with the recovered one at all integration points.
 ///
+/// - `gradients`: of the displacement at all integration points
+///
 /// # Errors
 /// Those of the shape functions.
-pub fn estimate_error(model: &Model, discrete: &Discretization, solution: &Solution) -> Result<ErrorEstimate> {
+pub fn estimate_error(
+    model: &Model,
+    discrete: &Discretization,
+    solution: &Solution,
+    gradients: &[Matrix2],
+) -> Result<ErrorEstimate> {
     let material = &model.material;
     let recovered = RecoveredStress::new(model, discrete, solution)?;
     let cells: Vec<(Vec<f64>, f64)> = (0..discrete.cells.len())
         .into_par_iter()
         .with_min_len(32)
-        .map_init(Buffers::default, |buffers, cell| {
-            cell_errors(material, discrete, solution, &recovered, cell, buffers)
-        })
+        .map_init(Buffer::default, |buffer, cell| cell_errors(material, discrete, gradients, &recovered, cell, buffer))
         .collect::<Result<_>>()?;
     let energy = cells.iter().map(|c| c.1).sum();
     let points: Vec<f64> = cells.into_iter().flat_map(|c| c.0).collect();
@@ -60,21 +64,25 @@ pub struct TipDisk {
 
 /// Squared energy norm of the estimated error in each of some disks [stress·length²].
 ///
+/// - `gradients`: of the displacement at all integration points
+///
 /// # Errors
 /// Those of the shape functions.
 pub fn estimate_error_within(
     model: &Model,
     discrete: &Discretization,
     solution: &Solution,
+    gradients: &[Matrix2],
     disks: &[TipDisk],
 ) -> Result<Vec<f64>> {
     let places = |disks: &[TipDisk]| disks.iter().map(|d| (d.center, d.radius)).collect::<Vec<_>>();
     if disks.iter().all(|d| d.singular.is_none()) {
-        return errors_within(model, discrete, solution, &places(disks), None);
+        return errors_within(model, discrete, solution, gradients, &places(disks), None);
     }
     // What is left of the stress without the singular part of one tip is smooth at that tip only.
     let one = |d: &TipDisk| {
-        let found = errors_within(model, discrete, solution, &[(d.center, d.radius)], d.singular.clone())?;
+        let disk = [(d.center, d.radius)];
+        let found = errors_within(model, discrete, solution, gradients, &disk, d.singular.clone())?;
         Ok(found[0])
     };
     disks.iter().map(one).collect()
@@ -84,6 +92,7 @@ fn errors_within(
     model: &Model,
     discrete: &Discretization,
     solution: &Solution,
+    gradients: &[Matrix2],
     disks: &[(Vector2, f64)],
     singular: Option<SingularStress>,
 ) -> Result<Vec<f64>> {
@@ -107,8 +116,8 @@ fn errors_within(
     let errors: Vec<(Vec<f64>, f64)> = near
         .par_iter()
         .with_min_len(8)
-        .map_init(Buffers::default, |buffers, &cell| {
-            cell_errors(&model.material, discrete, solution, &recovered, cell, buffers)
+        .map_init(Buffer::default, |buffer, &cell| {
+            cell_errors(&model.material, discrete, gradients, &recovered, cell, buffer)
         })
         .collect::<Result<_>>()?;
     let sum = |disk: &(Vector2, f64)| {
@@ -118,26 +127,21 @@ fn errors_within(
     Ok(disks.iter().map(sum).collect())
 }
 
-/// Buffers of one thread.
-type Buffers = (Scratch, Buffer);
-
 /// Error at each point of a cell, and the energy of the cell [stress·length²].
 fn cell_errors(
     material: &Elasticity,
     discrete: &Discretization,
-    solution: &Solution,
+    gradients: &[Matrix2],
     recovered: &RecoveredStress,
     cell: usize,
-    (scratch, buffer): &mut Buffers,
+    buffer: &mut Buffer,
 ) -> Result<(Vec<f64>, f64)> {
-    cell_functions(discrete, cell, Fields::Gradients, scratch)?;
-    let nodes = discrete.cell_nodes.get(cell);
-    let points = &discrete.cells.points[as_usize(&discrete.cells.point_ranges[cell])];
+    let range = as_usize(&discrete.cells.point_ranges[cell]);
+    recovered.survey(&discrete.cells.bounds(cell), buffer);
     let mut energy = 0.0;
-    let errors = points.iter().enumerate().map(|(q, point)| {
-        let gradient = cell_displacement_gradient(nodes, q, scratch, &solution.parameters);
-        let stress = material.stress(&gradient);
-        energy += 0.5 * point.weight * stress.dot(&gradient);
+    let errors = discrete.cells.points[range.clone()].iter().zip(&gradients[range]).map(|(point, gradient)| {
+        let stress = material.stress(gradient);
+        energy += 0.5 * point.weight * stress.dot(gradient);
         let difference = recovered.at(point.position, point.position, buffer)? - stress;
         Ok(0.5 * point.weight * difference.dot(&material.strain(&difference)))
     });

@@ -4,6 +4,7 @@ use crate::approximation::moving_least_squares::Derivatives;
 use crate::approximation::tip_functions::{MOST_FUNCTIONS, TipCoordinates, TipFunctions};
 use crate::approximation::{MovingLeastSquares, ShapeFunctions, Surroundings};
 use crate::error::Result;
+use crate::geometry::aabb::Aabb;
 use crate::material::Elasticity;
 use crate::math::{Matrix2, Vector2, direction};
 use crate::model::Model;
@@ -45,7 +46,14 @@ impl SingularStress {
 }
 
 /// Buffers of one thread.
-pub type Buffer = (Surroundings, ShapeFunctions<2>);
+#[derive(Clone, Debug, Default)]
+pub struct Buffer {
+    /// Around all points of the last survey.
+    fine: Surroundings,
+    /// Around one point.
+    wide: Surroundings,
+    shape: ShapeFunctions<2>,
+}
 
 /// The stress `Σ Ψ_k(x) σ(x_k)`: shape functions of smaller supports, the stress of the solution at the nodes.
 #[derive(Clone, Debug)]
@@ -93,7 +101,7 @@ impl<'a> RecoveredStress<'a> {
     ) -> Result<Self> {
         let wide = &discrete.approximation;
         let nodes = wide.nodes();
-        let regular = |at: Vector2, sight: Vector2, (around, shape): &mut Buffer| {
+        let regular = |at: Vector2, sight: Vector2, Buffer { wide: around, shape, .. }: &mut Buffer| {
             wide.evaluate(at, sight, Derivatives::First, around, shape)?;
             let stress = model.material.stress(&shape.gradient(&solution.parameters));
             Ok(singular.as_ref().map_or(stress, |s| stress - s.at(at, sight)))
@@ -127,14 +135,20 @@ impl<'a> RecoveredStress<'a> {
         Ok(Self { fine, wide, nodal, singular })
     }
 
-    /// The recovered stress at a point, seen from `sight` [stress].
+    /// Looks up what may matter for points in a box.
+    pub fn survey(&self, bounds: &Aabb<2>, buffer: &mut Buffer) {
+        self.fine.survey(bounds, &mut buffer.fine);
+    }
+
+    /// The recovered stress at a point that was surveyed, seen from `sight` [stress].
     ///
     /// # Errors
     /// Those of the shape functions.
-    pub fn at(&self, at: Vector2, sight: Vector2, (around, shape): &mut Buffer) -> Result<Matrix2> {
+    pub fn at(&self, at: Vector2, sight: Vector2, buffer: &mut Buffer) -> Result<Matrix2> {
+        let Buffer { fine, wide, shape } = buffer;
         // Where too few of the smaller supports reach, those of the solution do.
-        if self.fine.evaluate(at, sight, Derivatives::First, around, shape).is_err() {
-            self.wide.evaluate(at, sight, Derivatives::First, around, shape)?;
+        if self.fine.evaluate_surveyed(at, sight, Derivatives::First, fine, shape).is_err() {
+            self.wide.evaluate(at, sight, Derivatives::First, wide, shape)?;
         }
         // The plain shape functions alone are a mean.
         let pairs = shape.neighbors.iter().zip(&shape.values).filter(|(n, _)| (**n as usize) < self.nodal.len());

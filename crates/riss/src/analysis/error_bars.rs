@@ -22,7 +22,7 @@ use super::record::{CrackRecord, TipRecord};
 use crate::adaptivity::{SingularStress, TipDisk, estimate_error_within};
 use crate::approximation::tip_functions::TipCoordinates;
 use crate::error::Result;
-use crate::math::Vector2;
+use crate::math::{Matrix2, Vector2};
 use crate::model::Model;
 use crate::system::{Discretization, Solution};
 use std::f64::consts::PI;
@@ -41,12 +41,15 @@ const T_SHARES: [f64; 2] = [0.8, 0.9];
 
 /// Widens the bars of all tips, which hold the spread over the domains before.
 ///
+/// - `gradients`: of the displacement at all integration points
+///
 /// # Errors
 /// Those of the shape functions.
 pub(super) fn widen_error_bars(
     model: &Model,
     discrete: &Discretization,
     solution: &Solution,
+    gradients: &[Matrix2],
     cracks: &mut [CrackRecord],
 ) -> Result<()> {
     let mut tips: Vec<&mut TipRecord> =
@@ -58,7 +61,7 @@ pub(super) fn widen_error_bars(
         TipDisk { center: tip.position, radius: tip.radii.iter().copied().fold(0.0, f64::max), singular }
     };
     let disks: Vec<TipDisk> = tips.iter().map(disk).collect();
-    let errors = estimate_error_within(model, discrete, solution, &disks)?;
+    let errors = estimate_error_within(model, discrete, solution, gradients, &disks)?;
     let young = model.material.effective_young();
     for ((tip, error), TipDisk { radius, singular, .. }) in tips.iter_mut().zip(errors).zip(disks) {
         let (Some(k1), Some(k2), Some(spread)) = (tip.k1, tip.k2, tip.k_uncertainty) else { continue };

@@ -18,12 +18,13 @@ use crate::fracture::{
     tip_integrals,
 };
 use crate::geometry::predicates::distance_to_segment;
-use crate::math::Vector2;
+use crate::math::{Matrix2, Vector2};
 use crate::model::{FieldPoint, Model, RigidMotion};
 use crate::nodes::spacing::SpacingField;
 use crate::nodes::triangulation::SIGHT_SHIFT;
 use crate::nodes::{generate, generate_at};
 use crate::system::crack_faces::contact_pressure;
+use crate::system::galerkin::displacement_gradients;
 use crate::system::solve::UNBALANCED;
 use crate::system::{ConstraintMethod, Discretization, Solution, assemble};
 
@@ -55,7 +56,7 @@ pub(super) fn solve_step(
     observer: &mut dyn Observer,
 ) -> Result<StaticResult> {
     let mut warnings = Warnings::new(observer);
-    let (Solved { discrete, solution, method, cracks }, refinements) = match &settings.accuracy {
+    let (Solved { discrete, solution, gradients, method, cracks }, refinements) = match &settings.accuracy {
         Some(accuracy) => refine(model, settings, accuracy, &mut warnings)?,
         None => {
             let discrete = discretize(model, settings, warnings.observer)?;
@@ -73,7 +74,7 @@ pub(super) fn solve_step(
         }
     }
     warnings.observer.stage(Stage::Fields);
-    let energy = strain_energy(model, &discrete, &solution)?;
+    let energy = strain_energy(model, &discrete, &gradients);
     let fields = match warnings.observer.wants_fields(step) {
         true => sample_fields(model, &discrete, &solution)?,
         false => Fields::default(),
@@ -133,6 +134,8 @@ fn nodes_too_near(model: &Model, discrete: &Discretization) -> usize {
 pub(super) struct Solved {
     pub discrete: Discretization,
     pub solution: Solution,
+    /// Of the displacement at all integration points.
+    pub gradients: Vec<Matrix2>,
     /// As it was used.
     pub method: ConstraintMethod,
     pub cracks: Vec<CrackRecord>,
@@ -157,8 +160,9 @@ pub(super) fn solve_on(
     }
     warnings.observer.stage(Stage::Fracture);
     let mut cracks = evaluate_cracks(model, settings, &discrete, &solution, warnings)?;
-    widen_error_bars(model, &discrete, &solution, &mut cracks)?;
-    Ok(Solved { discrete, solution, method, cracks })
+    let gradients = displacement_gradients(&discrete, &solution.parameters)?;
+    widen_error_bars(model, &discrete, &solution, &gradients, &mut cracks)?;
+    Ok(Solved { discrete, solution, gradients, method, cracks })
 }
 
 /// Nodes, supports, cells and neighbor lists of a model.

@@ -71,7 +71,7 @@ pub(super) fn refine(
         // What the coarser solutions warned of is not of the result.
         warnings.list.truncate(said);
         let mut solved = solve_on(model, settings, discrete, warnings)?;
-        let estimate = estimate_error(model, &solved.discrete, &solved.solution)?;
+        let estimate = estimate_error(model, &solved.discrete, &solved.solution, &solved.gradients)?;
         let record = record(model, &mut solved, &estimate, records.last())?;
         warnings.observer.refinement(&record);
         records.push(record);
@@ -123,7 +123,7 @@ fn record(
     before: Option<&RefinementRecord>,
 ) -> Result<RefinementRecord> {
     let energy_error = match &model.exact {
-        Some(_) => strain_energy(model, &solved.discrete, &solved.solution)?.relative_error,
+        Some(_) => strain_energy(model, &solved.discrete, &solved.gradients).relative_error,
         None => None,
     };
     let factors: Vec<[f64; 2]> = tips(&mut solved.cracks).map(|(_, k)| k).collect();

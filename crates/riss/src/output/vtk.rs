@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// Bytes compressed at once.
 const BLOCK: usize = 1 << 18;
 /// Digits of noise hardly compress, whatever the effort.
-const COMPRESSION: u8 = 3;
+const COMPRESSION: u8 = 1;
 
 /// Shape of all cells of a grid, by the number of the format.
 #[derive(Clone, Copy, Debug)]

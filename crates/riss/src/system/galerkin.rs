@@ -283,11 +283,36 @@ fn correct_gradients(discrete: &Discretization, cell: usize, scratch: &mut Scrat
 }
 
 /// Displacement gradient at point `q` of a cell whose gradients are in `scratch`.
-pub fn cell_displacement_gradient(nodes: &[u32], q: usize, scratch: &Scratch, parameters: &[Vector2]) -> Matrix2 {
+fn cell_displacement_gradient(nodes: &[u32], q: usize, scratch: &Scratch, parameters: &[Vector2]) -> Matrix2 {
     let [gx, gy] = &scratch.gradients;
     let start = q * scratch.stride;
     let terms = nodes.iter().zip(gx[start..].iter().zip(&gy[start..]));
     terms.fold(Matrix2::zeros(), |sum, (&i, (&x, &y))| sum + parameters[i as usize] * Vector2::new(x, y).transpose())
+}
+
+/// Cells whose gradients lie together before they are joined.
+const CELLS_AT_ONCE: usize = 64;
+
+/// Displacement gradients of a solution at all integration points, in their order.
+///
+/// # Errors
+/// Those of the shape functions.
+pub fn displacement_gradients(discrete: &Discretization, parameters: &[Vector2]) -> Result<Vec<Matrix2>> {
+    let n_cells = discrete.cells.len();
+    let blocks: Vec<Vec<Matrix2>> = (0..n_cells.div_ceil(CELLS_AT_ONCE))
+        .into_par_iter()
+        .map_init(Scratch::default, |scratch, block| {
+            let mut gradients = vec![];
+            for cell in block * CELLS_AT_ONCE..n_cells.min((block + 1) * CELLS_AT_ONCE) {
+                cell_functions(discrete, cell, Fields::Gradients, scratch)?;
+                let (nodes, n_points) = (discrete.cell_nodes.get(cell), discrete.cells.point_ranges[cell].len());
+                let scratch = &*scratch;
+                gradients.extend((0..n_points).map(|q| cell_displacement_gradient(nodes, q, scratch, parameters)));
+            }
+            Ok(gradients)
+        })
+        .collect::<Result<_>>()?;
+    Ok(blocks.concat())
 }
 
 /// Stiffness and body force of the cells of a patch.
