@@ -13,6 +13,7 @@ use riss::output::{LoadingWriter, REPORT_FILE, RunInfo, RunStatus, SolidResults}
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Loads a solid and says how it broke; returns the exit code.
 pub fn load(
@@ -25,7 +26,7 @@ pub fn load(
 ) -> u8 {
     let followed = match follow(case, cohesive, loading, dir, progress) {
         Ok(Some(followed)) => followed,
-        Ok(None) => return crate::fail("stopped before the load curve was written"),
+        Ok(None) => return crate::fail("stopped; load_curve.csv has what was found until then"),
         Err(message) => return crate::fail(&message),
     };
     if arguments.json {
@@ -67,7 +68,7 @@ pub fn follow(
 ) -> Result<Option<Followed>, String> {
     let unwritten = |e: &io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(e));
     let writer = LoadingWriter::new(dir).map_err(|e| unwritten(&e))?;
-    let mut watch = Watch { writer, progress, error: None };
+    let mut watch = Watch { writer, progress, error: None, written: None };
     let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), &mut watch);
     let wall_time_s = watch.progress.finish();
     if let Some(e) = &watch.error {
@@ -115,7 +116,12 @@ struct Watch {
     writer: LoadingWriter,
     progress: Progress,
     error: Option<io::Error>,
+    /// When the load curve was written last.
+    written: Option<Instant>,
 }
+
+/// The load curve is written as often as this while it is followed.
+const BETWEEN_CURVES: Duration = Duration::from_secs(1);
 
 impl Observer for Watch {
     fn stage(&mut self, stage: Stage) {
@@ -124,6 +130,17 @@ impl Observer for Watch {
 
     fn warning(&mut self, warning: &Warning) {
         self.progress.warning(warning);
+    }
+
+    fn load_curve(&mut self, curve: &[LoadPoint]) -> ControlFlow<()> {
+        if self.written.is_none_or(|time| time.elapsed() >= BETWEEN_CURVES) {
+            self.written = Some(Instant::now());
+            if let Err(e) = self.writer.write_curve(curve) {
+                self.error = Some(e);
+                return ControlFlow::Break(());
+            }
+        }
+        if interrupt::is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {

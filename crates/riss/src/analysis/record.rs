@@ -1,7 +1,7 @@
 //! What an analysis reports.
 
 use super::crack_growth::GrowthState;
-use super::solid_cohesive::LoadingStep;
+use super::solid_cohesive::{LoadPoint, LoadingStep};
 use super::solid_growth::{SolidGrowthState, SolidStep};
 use super::warnings::Warning;
 use crate::crack::{End, EndKind, TipFrame};
@@ -55,6 +55,11 @@ pub trait Observer {
     }
     /// A step is complete. A break ends the analysis there.
     fn step(&mut self, _result: &StaticResult, _state: Option<&GrowthState>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// The path of a loaded solid with cohesive cracks has come to one more point, the last of `curve`; it begins anew after a
+    /// front grew. A break ends the analysis there.
+    fn load_curve(&mut self, _curve: &[LoadPoint]) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
     /// A state of a loaded solid with cohesive cracks is complete with its fields. A break ends the analysis there.

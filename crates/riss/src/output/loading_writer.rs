@@ -8,7 +8,7 @@ use super::solid_results::{LoadCurvePoint, SolidResults};
 use super::vtk::collection;
 use super::whole_file::{write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
-use crate::analysis::{LoadingRecord, LoadingStep, SolidResult};
+use crate::analysis::{LoadPoint, LoadingRecord, LoadingStep, SolidResult};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -39,6 +39,15 @@ impl LoadingWriter {
         }
         clear_scenes(dir, 0)?;
         Ok(Self { dir: dir.into(), steps: vec![], at_peak: None })
+    }
+
+    /// Writes the load curve as far as it is known, so that a run that is killed leaves it.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_curve(&self, curve: &[LoadPoint]) -> io::Result<()> {
+        let points: Vec<LoadCurvePoint> = curve.iter().enumerate().map(|(k, p)| LoadCurvePoint::new(k, p)).collect();
+        write_whole(&self.dir.join(LOAD_CURVE_FILE), &table(&points)?)
     }
 
     /// Writes the fields of a step.

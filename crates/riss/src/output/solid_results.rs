@@ -105,7 +105,7 @@ pub struct LoadCurvePoint {
 }
 
 impl LoadCurvePoint {
-    fn new(step: usize, point: &LoadPoint) -> Self {
+    pub(super) fn new(step: usize, point: &LoadPoint) -> Self {
         Self {
             step,
             load_factor: finite(point.load_factor),

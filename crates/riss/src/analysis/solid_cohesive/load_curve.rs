@@ -1,0 +1,125 @@
+//! The load curve: points of the path with their energies, and where it ends.
+
+use super::condensed::Condensed;
+use super::path::{CohesiveState, Path};
+use super::work::Work;
+use super::{Bond, LoadPoint, LoadingSettings};
+use crate::analysis::record::{GrowthEnd, GrowthEndKind, Observer};
+use crate::material::CohesiveLaw;
+use crate::math::Vector3;
+
+/// Where work and energies differ by more than this share of the work, supports of nodes are as large as the ligament.
+const IMBALANCE: f64 = 0.15;
+
+/// A path with its states.
+pub(super) struct Followed {
+    pub curve: Vec<LoadPoint>,
+    pub states: Vec<CohesiveState>,
+    pub end: GrowthEnd,
+    /// Largest shear between opened faces that cannot slide [stress].
+    pub most_shear: f64,
+    /// Where the path ends because a front has to grow.
+    pub reached: Option<Vector3>,
+    /// Whether the observer ended it.
+    pub is_stopped: bool,
+}
+
+/// Follows the path until it ends, a front has to grow or the observer stops it.
+pub(super) fn follow(
+    condensed: &Condensed,
+    work: &Work,
+    law: &CohesiveLaw,
+    loading: &LoadingSettings,
+    bonds: &[Bond],
+    observer: &mut dyn Observer,
+) -> Followed {
+    let shares: Vec<f64> = bonds.iter().map(|b| b.area.share()).collect();
+    let mut path = Path::new(condensed, law, &shares);
+    let mut followed = Followed {
+        curve: vec![LoadPoint::default()],
+        states: vec![path.state.clone()],
+        end: GrowthEnd { kind: GrowthEndKind::NoTipGrows, reason: "no load opens a cohesive crack".into() },
+        most_shear: 0.0,
+        reached: None,
+        is_stopped: false,
+    };
+    let mut done = [0.0; 2];
+    let mut goes_on = path.begin();
+    let mut greatest = 0.0f64;
+    while goes_on {
+        let tractions = path.tractions();
+        let now = condensed.work(path.state.load_factor, &path.state.openings);
+        let before = followed.curve[followed.curve.len() - 1];
+        let rise = path.state.load_factor - before.load_factor;
+        let external_work = before.external_work
+            + 0.5 * (path.state.load_factor + before.load_factor) * (now[0] - done[0])
+            + 0.5 * (now[1] + done[1]) * rise;
+        done = now;
+        let mut point = point(&path.state, work, law, bonds, now);
+        point.external_work = external_work;
+        followed.curve.push(point);
+        followed.states.push(path.state.clone());
+        followed.is_stopped = observer.load_curve(&followed.curve).is_break();
+        if followed.is_stopped {
+            break;
+        }
+        for pair in (0..bonds.len()).filter(|k| path.state.is_open[*k]) {
+            let [_, s, t] = condensed.of_pair(pair, &tractions);
+            let is_stuck = condensed.columns[pair + 1] == condensed.columns[pair] + 1;
+            followed.most_shear = followed.most_shear.max(if is_stuck { s.hypot(t) } else { 0.0 });
+        }
+        greatest = greatest.max(point.load.abs());
+        followed.reached = (0..bonds.len()).filter(|k| path.state.is_open[*k]).find_map(|k| bonds[k].near_front);
+        if followed.reached.is_some() {
+            break;
+        }
+        let end = |kind, reason: String| Some(GrowthEnd { kind, reason });
+        let limit = loading.largest_displacement.filter(|u| point.displacement.abs() >= *u);
+        let imbalance = (point.external_work - point.elastic_energy - point.dissipated_energy) / point.external_work;
+        let ended = if imbalance.abs() > IMBALANCE {
+            end(
+                GrowthEndKind::Failed,
+                format!(
+                    "work and energy differ by {:.0} %: the nodes are too coarse for what is left of the ligament, use a smaller spacing",
+                    100.0 * imbalance.abs()
+                ),
+            )
+        } else if point.load.abs() <= loading.stop_load * greatest {
+            end(GrowthEndKind::LimitReached, format!("the load has fallen to {} of its peak", loading.stop_load))
+        } else if let Some(limit) = limit {
+            end(GrowthEndKind::LimitReached, format!("the displacement has reached {limit}"))
+        } else if followed.curve.len() > loading.steps {
+            end(GrowthEndKind::StepsDone, format!("{} steps are done", loading.steps))
+        } else {
+            None
+        };
+        if let Some(end) = ended {
+            followed.end = end;
+            break;
+        }
+        goes_on = path.advance();
+        if !goes_on {
+            let reason = "no step of the path converges from here, however short".into();
+            followed.end = GrowthEnd { kind: GrowthEndKind::Failed, reason };
+        }
+    }
+    followed
+}
+
+/// Values of a state but for the external work.
+fn point(state: &CohesiveState, work: &Work, law: &CohesiveLaw, bonds: &[Bond], conjugates: [f64; 2]) -> LoadPoint {
+    let [by_loads, by_reactions] = conjugates;
+    let (load, displacement) = if work.prescribed > 0.0 {
+        (by_reactions / work.prescribed, state.load_factor * work.prescribed)
+    } else {
+        (state.load_factor * work.resultant, by_loads / work.resultant)
+    };
+    let mut point = LoadPoint { load_factor: state.load_factor, load, displacement, ..LoadPoint::default() };
+    for (k, bond) in bonds.iter().enumerate().filter(|(k, _)| state.is_open[*k]) {
+        point.crack_area += bond.area.cohesive;
+        point.dissipated_energy += bond.area.cohesive * law.dissipated(state.history[k]);
+    }
+    // That of the body, and what bonds give back when they unload to the origin.
+    point.elastic_energy = 0.5 * state.load_factor * (by_loads + by_reactions);
+    point
+}
