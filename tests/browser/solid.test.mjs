@@ -126,6 +126,14 @@ test("the body is shown from behind, whole, by its edges, and in every quantity"
   assert.equal(fields.size, names.length);
 }));
 
+test("settings and case stand below, and tables are copied", () => withReport(grown, {}, async (page) => {
+  const text = await page.locator("body").innerText();
+  for (const part of ["nodes.growth\t0.3", "Set beside the file: growth.steps=1", "[[crack]]"]) assert.ok(text.includes(part), part);
+  const copies = page.getByRole("button", { name: /^Copy the table of Front 1/ });
+  await copies.first().click();
+  assert.equal(await copies.first().textContent(), "Copied");
+}));
+
 test("states of a load curve are there, on a phone and in the dark, too", () => withReport(broken, { viewport: { width: 390, height: 800 }, colorScheme: "dark" }, async (page) => {
   const curve = results(broken).load_curve;
   const label = await page.locator("#view-label").textContent();

@@ -197,6 +197,7 @@ fn run_plane(case: &Case, folder: &Path) -> Result<Results, String> {
 }
 
 fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
+    results::describe_solid(case, folder).map_err(|e| results::reason(&e))?;
     let mut progress = Progress::new(true);
     if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
         let followed = solid_loading::follow(case, cohesive, loading, folder, progress)?;

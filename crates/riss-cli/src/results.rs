@@ -1,9 +1,11 @@
 //! The one place where a run meets the library's output.
 
 use riss::analysis::StaticResult;
-use riss::case::Case;
+use riss::case::{Case, SolidCase};
 use riss::model::Model;
-use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter, results_json, write_model_picture};
+use riss::output::{
+    OutputOptions, RunInfo, RunSource, RunStatus, RunWriter, describe_run, results_json, write_model_picture,
+};
 use riss::system::Discretization;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -62,16 +64,12 @@ pub fn write(dir: &Path, case: &Case, run: &RunRecord, result: &StaticResult) ->
 
 /// What is run, for the report.
 pub fn source(case: &Case) -> RunSource {
-    let since_1970 = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-    RunSource {
-        case_file: case.path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()),
-        case_text: case.text.clone(),
-        overrides: case.overrides.clone(),
-        platform: format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
-        threads: rayon::current_num_threads(),
-        started_unix_s: since_1970.as_secs(),
-        settings: case.effective_settings(),
-    }
+    RunSource::begun(&case.path, &case.text, &case.overrides, case.effective_settings(), "")
+}
+
+/// Says in a folder what is run there, for the report of a solid.
+pub fn describe_solid(case: &SolidCase, dir: &Path) -> io::Result<()> {
+    describe_run(dir, &RunSource::begun(&case.path, &case.text, &case.overrides, case.effective_settings(), ""))
 }
 
 /// What a case wants to be written.

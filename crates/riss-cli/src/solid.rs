@@ -31,6 +31,9 @@ pub fn run(arguments: &RunArguments, case: &SolidCase, dir: &Path) -> u8 {
         Ok(claim) => claim,
         Err(e) => return cannot_write("the results", dir, &e),
     };
+    if let Err(e) = results::describe_solid(case, dir) {
+        return cannot_write("the results", dir, &e);
+    }
     let mut progress = Progress::new(arguments.quiet || arguments.log.is_on_terminal());
     if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
         interrupt::listen();

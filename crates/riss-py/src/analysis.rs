@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
 /// How often Ctrl-C is looked for.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -172,18 +172,12 @@ pub fn in_pool<T: Send>(
     }
 }
 
+/// What runs, as reports tell it.
+pub const FROM_PYTHON: &str = ", from Python";
+
 /// What is run, for the report.
 fn source(case: &riss::case::Case) -> RunSource {
-    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    RunSource {
-        case_file: case.path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()),
-        case_text: case.text.clone(),
-        overrides: case.overrides.clone(),
-        platform: format!("{} on {}, from Python", std::env::consts::OS, std::env::consts::ARCH),
-        threads: rayon::current_num_threads(),
-        started_unix_s: since_1970.as_secs(),
-        settings: case.effective_settings(),
-    }
+    RunSource::begun(&case.path, &case.text, &case.overrides, case.effective_settings(), FROM_PYTHON)
 }
 
 /// Times of the stages.

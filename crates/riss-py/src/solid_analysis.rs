@@ -1,18 +1,20 @@
 //! A run of a solid: static, with growing cracks, or with cohesive ones under load.
 
-use crate::analysis::{Clock, Event, Failure, ask, in_pool, listen};
+use crate::analysis::{Clock, Event, FROM_PYTHON, Failure, ask, in_pool, listen};
 use crate::error::of_text;
 use crate::solid::{SolidCase, SolidStep};
 use crate::step::State;
 use pyo3::prelude::*;
 use riss::analysis::{
-    GrowthEnd, GrowthEndKind, LoadingStep, Observer, SolidGrowthState, SolidResult, Stage, Warning, solid_growth,
-    solid_loading, solid_static,
+    GrowthEnd, GrowthEndKind, LoadPoint, LoadingStep, Observer, SolidGrowthState, SolidResult, Stage, Warning,
+    solid_growth, solid_loading, solid_static,
 };
 use riss::model::{SolidModel, UnitNames};
 use riss::output::solid_files::read_solid_results;
 use riss::output::solid_results::SolidStepResults;
-use riss::output::{LoadingWriter, RunInfo, RunStatus, SolidResults, SolidWriter, write_solid_results};
+use riss::output::{
+    LoadingWriter, RunInfo, RunSource, RunStatus, SolidResults, SolidWriter, describe_run, write_solid_results,
+};
 use std::io;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -67,6 +69,11 @@ fn solve(
         problem: None,
     };
     let files = |e: io::Error| Failure::Files(out.clone().unwrap_or_default(), e);
+    if let Some(dir) = &out {
+        let settings = case.effective_settings();
+        let source = RunSource::begun(&case.path, &case.text, &case.overrides, settings, FROM_PYTHON);
+        describe_run(dir, &source).map_err(files)?;
+    }
     if let (Some(growth), None) = (&case.growth, &case.model.cohesive) {
         if let Some(dir) = &out {
             let writer = match &start {
@@ -251,6 +258,10 @@ impl Observer for Listener<'_> {
         };
         let answer = ask(&self.send, step);
         self.goes_on(answer)
+    }
+
+    fn load_curve(&mut self, _curve: &[LoadPoint]) -> ControlFlow<()> {
+        self.goes_on(true)
     }
 
     fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {

@@ -1,6 +1,7 @@
 //! All settings of a case with their defaults, for the reader of a report.
 
-use super::Case;
+use super::{Case, SolidCase};
+use crate::analysis::{SolidGrowthSettings, SolidSettings};
 use serde_json::{Value, json};
 
 impl Case {
@@ -19,6 +20,27 @@ impl Case {
         groups.extend(s.accuracy.as_ref().map(|accuracy| ("accuracy", json!(accuracy))));
         groups.extend(self.growth.as_ref().map(|growth| ("growth", json!(growth))));
         groups.push(("output", json!(self.output)));
+        let mut rows = vec![];
+        groups.iter().for_each(|(key, value)| add_rows(key, value, &mut rows));
+        rows
+    }
+}
+
+impl SolidCase {
+    /// Key and value of every setting, defaults filled in.
+    pub fn effective_settings(&self) -> Vec<[String; 2]> {
+        let SolidSettings { spacing, nodes_on_fronts, collocation, points_on_front } = &self.settings;
+        let mut groups = vec![
+            ("nodes.spacing", json!(spacing.largest())),
+            ("nodes.growth", json!(spacing.growth())),
+            ("nodes.on_fronts", json!(nodes_on_fronts)),
+            ("collocation", json!(collocation)),
+            ("fracture.points", json!(points_on_front)),
+        ];
+        if let Some(SolidGrowthSettings { steps, increment, criterion, spacing: _ }) = &self.growth {
+            groups.push(("growth", json!({ "steps": steps, "increment": increment, "criterion": criterion })));
+        }
+        groups.extend(self.loading.as_ref().map(|loading| ("loading", json!(loading))));
         let mut rows = vec![];
         groups.iter().for_each(|(key, value)| add_rows(key, value, &mut rows));
         rows

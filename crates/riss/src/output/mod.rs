@@ -39,7 +39,7 @@ pub use convergence::write_convergence;
 pub use field_picture::{FieldQuantity, write_field_picture};
 pub use loading_writer::{LOAD_CURVE_FILE, LoadingWriter};
 pub use model_picture::write_model_picture;
-pub use report::{REPORT_FILE, RunSource, write_report};
+pub use report::{REPORT_FILE, RunSource, describe_run, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};
 pub use shape_picture::write_shape_pictures;

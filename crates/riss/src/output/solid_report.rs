@@ -5,7 +5,7 @@
 
 use super::color_map::VIRIDIS;
 use super::report::solid_scene::Scenes;
-use super::report::{SOLID_VIEW, html, push_data, push_solid_script};
+use super::report::{RunSource, SOLID_VIEW, html, push_data, push_solid_script};
 use super::solid_results::{FrontPointResults, FrontResults, LoadCurvePoint, SolidResults};
 use std::fmt::Write;
 
@@ -29,6 +29,7 @@ canvas { width: 100%; aspect-ratio: 1 / 0.62; touch-action: none; cursor: grab; 
 .controls { display: flex; flex-wrap: wrap; gap: 8px 20px; align-items: center; margin-top: 8px; }
 .controls input { vertical-align: middle; } .scale { display: inline-block; width: 90px; height: 10px; print-color-adjust: exact; }
 @media print { button, input, select, #view-status, #view-keys { display: none; } section { break-inside: avoid; } }
+pre { font-size: 13px; } .scroll button { float: right; }
 th { color: var(--quiet); } th:first-child, td:first-child { text-align: left; }
 ";
 
@@ -79,6 +80,9 @@ pub fn solid_report(results: &SolidResults, scenes: &Scenes) -> String {
     }
     push_cracks(&mut page, results);
     push_stages(&mut page, results);
+    if let Some(source) = scenes.source() {
+        push_source(&mut page, source);
+    }
     push_script(&mut page, results, scenes);
     page
 }
@@ -214,6 +218,24 @@ fn push_stages(page: &mut String, results: &SolidResults) {
         push_row(page, &[html(stage), format!("{time:.2}")]);
     }
     page.push_str("\n</table>\n</section>\n");
+}
+
+fn push_source(page: &mut String, source: &RunSource) {
+    let threads = if source.threads == 1 { "thread" } else { "threads" };
+    let _ = write!(
+        page,
+        "<section>\n<h2>Settings</h2>\n<p>{} on {}, {} {threads}; defaults are filled in.</p>\n<div class=\"scroll\"><table>\n\
+         <tr><th>key<th>value",
+        html(&source.case_file),
+        html(&source.platform),
+        source.threads
+    );
+    source.settings.iter().for_each(|row| push_row(page, &row.each_ref().map(|text| html(text))));
+    page.push_str("\n</table></div>\n</section>\n<section>\n<h2>Case file</h2>\n");
+    for set in &source.overrides {
+        let _ = writeln!(page, "<p>Set beside the file: <code>{}</code></p>", html(set));
+    }
+    let _ = write!(page, "<pre class=\"scroll\">{}</pre>\n</section>\n", html(&source.case_text));
 }
 
 fn push_row(page: &mut String, cells: &[String]) {

@@ -21,6 +21,7 @@ use serde_json::json;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 use step_fields::Detail;
 
 /// Name of the report.
@@ -35,8 +36,9 @@ const MOST_BYTES: u64 = 18_000_000;
 const PAGE: &str = include_str!("report.html");
 const STYLE: [&str; 2] = [include_str!("vendor/uPlot.min.css"), include_str!("report.css")];
 /// In this order; each file names what it offers to those after it.
-const SCRIPT: [&str; 10] = [
+const SCRIPT: [&str; 11] = [
     include_str!("js/format.js"),
+    include_str!("js/copy.js"),
     include_str!("js/colors.js"),
     include_str!("js/fields.js"),
     include_str!("js/raster.js"),
@@ -53,8 +55,9 @@ const CURVE_LIBRARY: [&str; 4] =
 
 /// The view of a solid, and its scripts in order.
 pub(super) const SOLID_VIEW: &str = include_str!("solid_view.html");
-const SOLID_SCRIPT: [&str; 7] = [
+const SOLID_SCRIPT: [&str; 8] = [
     include_str!("js/format.js"),
+    include_str!("js/copy.js"),
     include_str!("js/colors.js"),
     include_str!("js/fields.js"),
     include_str!("js/solid_fields.js"),
@@ -84,6 +87,30 @@ pub struct RunSource {
     /// Key and value of every setting, defaults filled in.
     #[serde(default)]
     pub settings: Vec<[String; 2]>,
+}
+
+impl RunSource {
+    /// That of a run which begins now.
+    ///
+    /// - `program`: what runs it, beside system and processor
+    pub fn begun(
+        case_file: &Path,
+        case_text: &str,
+        overrides: &[String],
+        settings: Vec<[String; 2]>,
+        program: &str,
+    ) -> Self {
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        Self {
+            case_file: case_file.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()),
+            case_text: case_text.into(),
+            overrides: overrides.to_vec(),
+            platform: format!("{} on {}{program}", std::env::consts::OS, std::env::consts::ARCH),
+            threads: rayon::current_num_threads(),
+            started_unix_s: since_1970.as_secs(),
+            settings,
+        }
+    }
 }
 
 /// Makes the report of a finished or interrupted run again from its folder; returns its path.
@@ -119,6 +146,23 @@ pub(super) fn write_source(dir: &Path, source: Option<&RunSource>) -> io::Result
     }
 }
 
+/// Says in a folder what is run there, for the report of a solid.
+///
+/// # Errors
+/// What the system says.
+pub fn describe_run(dir: &Path, source: &RunSource) -> io::Result<()> {
+    write_source(dir, Some(source))
+}
+
+/// What was run in a folder, if it is told there.
+fn read_source(dir: &Path) -> io::Result<Option<RunSource>> {
+    match fs::read(dir.join(SOURCE_FILE)) {
+        Ok(text) => Ok(Some(serde_json::from_slice(&text)?)),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(e),
+    }
+}
+
 /// Names of the files that the report is made of beside those of `step` and `results.json`.
 pub(super) fn files_before(dir: &Path, step: usize) -> Vec<String> {
     let of_steps =
@@ -136,11 +180,7 @@ fn step_file_name(detail: Detail, step: usize) -> String {
 
 /// The page itself.
 pub(super) fn report(dir: &Path, results: &Results) -> io::Result<String> {
-    let source: Option<RunSource> = match fs::read(dir.join(SOURCE_FILE)) {
-        Ok(text) => Some(serde_json::from_slice(&text)?),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => None,
-        Err(e) => return Err(e),
-    };
+    let source = read_source(dir)?;
     let steps: Vec<usize> = results.steps.iter().map(|s| s.step).collect();
     let chosen = choose(dir, &steps, MOST_BYTES);
     let mut fields = String::new();

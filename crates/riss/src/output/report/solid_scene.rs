@@ -3,7 +3,7 @@
 
 use super::super::solid_results::{FrontResults, SolidResults};
 use super::super::whole_file::write_whole;
-use super::{MOST_BYTES, REPORT_FOLDER, boundary};
+use super::{MOST_BYTES, REPORT_FOLDER, RunSource, boundary, read_source};
 use crate::analysis::SolidResult;
 use crate::math::Vector3;
 use crate::model::SolidModel;
@@ -27,6 +27,8 @@ pub struct Scenes {
     body: Vec<f64>,
     /// Steps with what is drawn of them.
     steps: Vec<(usize, StepScene)>,
+    /// What was run.
+    source: Option<RunSource>,
 }
 
 /// Vertices and triangles.
@@ -151,7 +153,8 @@ impl Scenes {
         for (step, _) in found.iter().rev().step_by(every).rev() {
             steps.push((*step, serde_json::from_slice(&fs::read(dir.join(step_name(*step)))?)?));
         }
-        Ok(Self { body: serde_json::from_slice(&fs::read(dir.join(body_name()))?)?, steps })
+        let body = serde_json::from_slice(&fs::read(dir.join(body_name()))?)?;
+        Ok(Self { body, steps, source: read_source(dir)? })
     }
 
     /// Vertices and triangles of all cracks of a step, or of the last.
@@ -165,6 +168,11 @@ impl Scenes {
             (vertices, c.triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect())
         };
         Some(scene.cracks.iter().map(surface).collect())
+    }
+
+    /// What was run, if the folder tells.
+    pub(crate) fn source(&self) -> Option<&RunSource> {
+        self.source.as_ref()
     }
 
     /// Whether there is nothing to draw.

@@ -172,7 +172,9 @@ function start() {
   settingsTable(run.source);
   historyTable(results, null);
   attachControls();
-  for (const [id, name] of [["tips", "crack tips"], ["history", "all steps"], ["settings-table", "settings"]]) addCopyButton(byId(id), name);
+  for (const [id, name] of [["tips", "crack tips"], ["history", "all steps"], ["settings-table", "settings"]]) {
+    addCopyButton(byId(id), name, byId(id).closest("section").querySelector(".section-head"));
+  }
   attachPointer(map, (...at) => {
     pointer = at.length ? at : null;
     if (map.cross && pointer) { map.cross = false; map.draw(); }

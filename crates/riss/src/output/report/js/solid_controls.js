@@ -92,8 +92,11 @@ function listenToControls() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 }
 
-/** Everything but the view is on the page already. */
+/** Everything but the view and buttons is on the page already. */
 async function start() {
+  document.querySelectorAll(".scroll table").forEach((table) => {
+    addCopyButton(table, table.closest("section").querySelector("h2").textContent, table.closest(".scroll"));
+  });
   try {
     view = new SolidView(canvas, whole.size);
   } catch {

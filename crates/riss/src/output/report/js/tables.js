@@ -1,4 +1,4 @@
-// Tables with a button to copy them: `fillTable`, `tipTable`, `reactionTable`, `historyTable`, `stageTable`,
+// Tables: `fillTable`, `tipTable`, `reactionTable`, `historyTable`, `stageTable`,
 // `settingsTable`.
 
 const column = (title, of, kind) => ({ title, of, kind });
@@ -13,32 +13,6 @@ function fillTable(table, columns, rows, isCurrent = () => false) {
   const head = element("tr", {}, ...columns.map((c) => element("th", { class: c.kind, scope: "col" }, c.title)));
   const body = rows.map((row) => element("tr", { class: isCurrent(row) ? "current" : null }, ...cells(row)));
   table.replaceChildren(element("thead", {}, head), element("tbody", {}, ...body));
-}
-
-async function copyText(text) {
-  try {
-    await navigator.clipboard.writeText(text);
-  } catch {
-    // Some browsers keep the clipboard from files that were opened from a disk.
-    const area = element("textarea", { class: "skip" });
-    area.value = text;
-    document.body.append(area);
-    area.select();
-    document.execCommand("copy");
-    area.remove();
-  }
-}
-
-/** Adds a button to the head of a section that copies a table for spreadsheets. */
-function addCopyButton(table, name) {
-  const button = element("button", { type: "button", "aria-label": `Copy the table of ${name}` }, "Copy");
-  button.addEventListener("click", async () => {
-    const line = (row) => [...row.cells].map((cell) => cell.dataset.value ?? cell.textContent).join("\t");
-    await copyText([...table.rows].map(line).join("\n") + "\n");
-    button.textContent = "Copied";
-    setTimeout(() => { button.textContent = "Copy"; }, 1500);
-  });
-  table.closest("section").querySelector(".section-head").append(button);
 }
 
 const TIP_COLUMNS = [
