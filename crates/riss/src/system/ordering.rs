@@ -1,13 +1,12 @@
 //! Elimination order of the nodes by geometric nested dissection [George1973].
 
 use super::block_matrix::BlockMatrix;
-use crate::geometry::aabb::Aabb;
 use crate::math::Vector2;
 
 /// Sets with no more nodes than this are not split further.
 const LEAF: usize = 60;
 
-/// Nodes in elimination order: halves at the median of the longer side first, then the nodes between them.
+/// Nodes in elimination order: halves at the median along the axis that leaves fewer nodes between them, then these.
 pub fn nested_dissection(positions: &[Vector2], matrix: &BlockMatrix) -> Vec<u32> {
     let graph = Graph::of(matrix);
     let mut order = Vec::with_capacity(positions.len());
@@ -51,9 +50,21 @@ impl Graph {
         Self { starts, neighbors }
     }
 
-    fn neighbors(&self, i: u32) -> &[u32] {
-        &self.neighbors[self.starts[i as usize]..self.starts[i as usize + 1]]
+    /// Whether a node has a neighbor with a mark.
+    fn touches(&self, i: u32, mark: &[u32], stamp: u32) -> bool {
+        let neighbors = &self.neighbors[self.starts[i as usize]..self.starts[i as usize + 1]];
+        neighbors.iter().any(|&j| mark[j as usize] == stamp)
     }
+}
+
+/// Puts the lower half along an axis first, and marks the upper one.
+fn cut(positions: &[Vector2], nodes: &mut [u32], axis: usize, mark: &mut [u32], stamp: &mut u32) {
+    let middle = nodes.len() / 2;
+    nodes.select_nth_unstable_by(middle, |&a, &b| {
+        positions[a as usize][axis].total_cmp(&positions[b as usize][axis]).then(a.cmp(&b))
+    });
+    *stamp += 1;
+    nodes[middle..].iter().for_each(|&i| mark[i as usize] = *stamp);
 }
 
 fn dissect(
@@ -68,17 +79,17 @@ fn dissect(
         order.extend(nodes);
         return;
     }
-    let bounds = Aabb::of_points(nodes.iter().map(|&i| positions[i as usize]));
-    let axis = bounds.size().imax();
     let middle = nodes.len() / 2;
-    nodes.select_nth_unstable_by(middle, |&a, &b| {
-        positions[a as usize][axis].total_cmp(&positions[b as usize][axis]).then(a.cmp(&b))
+    // Nodes crowd around tips: the way across the longer side may lead through all of them.
+    let [across_y, across_x] = [1, 0].map(|axis| {
+        cut(positions, &mut nodes, axis, mark, stamp);
+        nodes[..middle].iter().filter(|i| graph.touches(**i, mark, *stamp)).count()
     });
-    *stamp += 1;
+    if across_y < across_x {
+        cut(positions, &mut nodes, 1, mark, stamp);
+    }
     let right = nodes.split_off(middle);
-    right.iter().for_each(|&i| mark[i as usize] = *stamp);
-    let touches = |i: &u32| graph.neighbors(*i).iter().any(|&j| mark[j as usize] == *stamp);
-    let (separator, left): (Vec<u32>, Vec<u32>) = nodes.into_iter().partition(touches);
+    let (separator, left): (Vec<u32>, Vec<u32>) = nodes.into_iter().partition(|i| graph.touches(*i, mark, *stamp));
     dissect(positions, graph, left, order, mark, stamp);
     dissect(positions, graph, right, order, mark, stamp);
     order.extend(separator);
