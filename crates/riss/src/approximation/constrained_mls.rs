@@ -37,6 +37,8 @@ pub struct ConstrainedMls<const D: usize> {
     fronts: Vec<EnrichedFront<D>>,
     /// Angles of the nodes at each front [rad].
     angles: Vec<Vec<f64>>,
+    /// Unit vectors at half of these.
+    half_angles: Vec<Vec<[f64; 2]>>,
     basis: TaylorBasis<D>,
     columns: Vec<Column<D>>,
     settings: ConstrainedMlsSettings,
@@ -93,8 +95,11 @@ impl<const D: usize> ConstrainedMls<D> {
                 Column { value: 0.0, gradient, second_derivatives }
             })
             .collect();
-        let angles = fronts.iter().map(|f| f.angles(&cloud)).collect();
-        Self { nodes: VisibleNodes::new(cloud, obstacles), fronts, angles, basis, columns, settings }
+        let angles: Vec<Vec<f64>> = fronts.iter().map(|f| f.angles(&cloud)).collect();
+        let half = |angle: &f64| (0.5 * angle).sin_cos();
+        let halves = |angles: &Vec<f64>| angles.iter().map(half).map(|(s, c)| [c, s]).collect();
+        let half_angles = angles.iter().map(halves).collect();
+        Self { nodes: VisibleNodes::new(cloud, obstacles), fronts, angles, half_angles, basis, columns, settings }
     }
 
     /// The nodes.
@@ -210,20 +215,22 @@ impl<const D: usize> ConstrainedMls<D> {
         neighbors: &[(f64, u32)],
         fit: &mut LeastSquares<D>,
     ) -> Rank {
-        let has_constant = !center.is_constrained();
-        let n_columns = usize::from(has_constant) + self.basis.len() + n_front_functions::<D>();
-        fit.start(radius, self.settings.weight, neighbors.iter().map(|n| n.0 / (radius * radius)), n_columns);
+        let (has_constant, front) = (!center.is_constrained(), self.frame(center, at, radius));
+        let n_columns = self.basis.len() + usize::from(has_constant) + front.map_or(0, |_| n_front_functions::<D>());
+        let scale = 1.0 / (radius * radius);
+        fit.start(radius, self.settings.weight, neighbors.iter().map(|n| n.0 * scale), n_columns);
         if has_constant {
             fit.add_constant();
         }
-        let offsets = neighbors.iter().map(|n| (self.cloud().positions[n.1 as usize] - at) / radius);
-        fit.add_monomials(self.basis.factors(), &self.columns, offsets);
+        let inverse = 1.0 / radius;
+        let offset = |n: &(f64, u32)| (self.cloud().positions[n.1 as usize] - at) * inverse;
+        fit.add_monomials(self.basis.factors(), &self.columns, neighbors.iter().map(offset));
         let n_leading = self.n_needed();
         let kept_constant = !has_constant || fit.orthogonalize(1, DEPENDENT) == 1;
         let kept = fit.orthogonalize(n_leading, DEPENDENT);
         let rest = self.basis.len() - n_leading;
         let is_complete = fit.orthogonalize(rest, DEPENDENT) == rest && kept == n_leading && kept_constant;
-        if let Some((front, frame)) = self.frame(center, at, radius).filter(|_| is_complete) {
+        if let Some((front, frame)) = front.filter(|_| is_complete) {
             let angle = match center.own() {
                 Some(i) => self.angles[front][i as usize],
                 None => self.fronts[front].angle(&frame, sight),
@@ -264,7 +271,7 @@ impl<const D: usize> ConstrainedMls<D> {
         let count = n_front_functions::<D>();
         fit.add_columns(&columns[..count], neighbors, |j, values| {
             let place = self.cloud().positions[j as usize];
-            let f = frame.values(place, self.angles[front][j as usize]);
+            let f = frame.values(place, self.half_angles[front][j as usize]);
             let along = (place - at).dot(&tangent) / radius;
             for (k, value) in values.iter_mut().enumerate() {
                 *value = match k.checked_sub(MOST_FUNCTIONS) {
@@ -284,31 +291,56 @@ impl<const D: usize> ConstrainedMls<D> {
         fit: &mut LeastSquares<D>,
         shape: &mut ShapeFunctions<D>,
     ) {
-        shape.neighbors.clear();
-        shape.values.clear();
-        shape.gradients.clear();
-        shape.second_derivatives.clear();
         let is_node = center.is_constrained();
-        if let Some(i) = center.own().filter(|_| is_node) {
-            shape.neighbors.push(i);
-            shape.values.push(1.0);
-            shape.gradients.push(Vector::zeros());
-            shape.second_derivatives.push(Matrix::zeros());
-        }
+        let first = usize::from(is_node);
+        let n = first + neighbors.len();
+        shape.neighbors.clear();
+        shape.neighbors.extend(center.own().filter(|_| is_node));
+        shape.neighbors.extend(neighbors.iter().map(|n| n.1));
+        shape.values.clear();
+        shape.values.resize(n, 0.0);
+        shape.gradients.resize(n, Vector::zeros());
+        shape.second_derivatives.resize(n, Matrix::zeros());
         fit.solve(!is_node);
-        for (i, n) in neighbors.iter().enumerate() {
-            let row = fit.row(i);
-            shape.neighbors.push(n.1);
-            shape.values.push(if is_node { 0.0 } else { row.value });
-            shape.gradients.push(row.gradient);
-            shape.second_derivatives.push(row.second_derivatives);
+        let mut lines = fit.lines();
+        // The center takes part through the differences u_I - u_y [C3D, Eq. 10].
+        for d in 0..D {
+            let line = lines.next().unwrap_or_default();
+            for (gradient, v) in shape.gradients[first..].iter_mut().zip(line) {
+                gradient[d] = *v;
+            }
             if is_node {
-                // The center takes part through the differences u_I - u_y [C3D, Eq. 10].
-                shape.gradients[0] -= row.gradient;
-                shape.second_derivatives[0] -= row.second_derivatives;
+                shape.gradients[0][d] = -sum(line);
             }
         }
+        for (a, b) in (0..D).flat_map(|a| (a..D).map(move |b| (a, b))) {
+            let line = lines.next().unwrap_or_default();
+            for (second, v) in shape.second_derivatives[first..].iter_mut().zip(line) {
+                (second[(a, b)], second[(b, a)]) = (*v, *v);
+            }
+            if is_node {
+                let own = -sum(line);
+                (shape.second_derivatives[0][(a, b)], shape.second_derivatives[0][(b, a)]) = (own, own);
+            }
+        }
+        if is_node {
+            shape.values[0] = 1.0;
+        } else {
+            shape.values.copy_from_slice(lines.next().unwrap_or_default());
+        }
     }
+}
+
+/// Sum of a list, in several parts so that additions need not wait for one another.
+fn sum(list: &[f64]) -> f64 {
+    let (chunks, rest) = list.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for chunk in chunks {
+        for (sum, v) in sums.iter_mut().zip(chunk) {
+            *sum += v;
+        }
+    }
+    sums.iter().chain(rest).sum()
 }
 
 /// How much of a basis the neighbors determine.
@@ -318,7 +350,7 @@ struct Rank {
     n_leading: usize,
 }
 
-/// Number of functions near a front; in space there are also those times the length along it.
+/// Number of functions of a front in the basis.
 const fn n_front_functions<const D: usize>() -> usize {
     if D == 3 { 2 * MOST_FUNCTIONS } else { MOST_FUNCTIONS }
 }
@@ -330,12 +362,12 @@ fn default_neighbors<const D: usize>(l: usize) -> usize {
 }
 
 impl CollocationWeight {
-    /// Replaces squared relative distances, from 0 to 1, by the square roots of the weights there.
-    pub(super) fn to_roots(self, squares: &mut [f64]) {
+    /// Replaces squared relative distances, from 0 to 1, by square roots of the weights.
+    pub fn to_roots(self, numbers: &mut [f64]) {
         match self {
-            Self::NonSmooth => squares.iter_mut().for_each(|s| *s = 1.0 - s.sqrt().sqrt()),
+            Self::NonSmooth => numbers.iter_mut().for_each(|s2| *s2 = 1.0 - s2.sqrt().sqrt()),
             Self::Smooth(function) => {
-                squares.iter_mut().for_each(|s| *s = function.value_and_slope(*s).0.max(0.0).sqrt());
+                numbers.iter_mut().for_each(|s2| *s2 = function.value_and_slope(*s2).0.max(0.0).sqrt());
             }
         }
     }

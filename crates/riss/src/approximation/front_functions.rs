@@ -106,10 +106,22 @@ impl<const D: usize> FrontFrame<D> {
     }
 
     /// Values of the four functions [√length].
+    ///
+    /// - `near`: unit vector at half the known angle that [`Self::polar`] takes
     #[inline]
-    pub fn values(&self, at: Vector<D>, near: f64) -> [f64; MOST_FUNCTIONS] {
-        let [r, theta] = self.polar(at, near);
-        TipFunctions::Full.angular(theta).map(|g| r.sqrt() * g[0])
+    pub fn values(&self, at: Vector<D>, near: [f64; 2]) -> [f64; MOST_FUNCTIONS] {
+        let [x, y] = self.plane(at);
+        let r = (x * x + y * y).sqrt();
+        // √r cos θ/2 and √r sin θ/2, the larger one first, without the difference of r and x.
+        let large = (0.5 * (r + x.abs())).sqrt();
+        let small = if large > 0.0 { 0.5 * y / large } else { 0.0 };
+        let [c, s] = if x >= 0.0 { [large, small] } else { [small.abs(), large.copysign(y)] };
+        // On the sheet nearest to the known angle, half angles are less than a right angle apart.
+        let sheet = if c * near[0] + s * near[1] < 0.0 { -1.0 } else { 1.0 };
+        let (c, s) = (sheet * c, sheet * s);
+        // sin θ = 2 sin θ/2 cos θ/2.
+        let sine = if r > 0.0 { 2.0 * c * s / r } else { 0.0 };
+        [c, s, s * sine, c * sine]
     }
 
     /// Values and derivatives of the four functions; the point must not lie on the front.
@@ -272,7 +284,7 @@ mod tests {
                     let step = Vector::<3>::ith(d, 1e-6);
                     let (ahead, behind) = (f.jets(at + step, 0.0), f.jets(at - step, 0.0));
                     for k in 0..MOST_FUNCTIONS {
-                        assert!((jets[k].value - f.values(at, 0.0)[k]).abs() < 1e-15);
+                        assert!((jets[k].value - f.values(at, [1.0, 0.0])[k]).abs() < 1e-15);
                         let slope = (ahead[k].value - behind[k].value) / 2e-6;
                         assert!((slope - jets[k].gradient[d]).abs() < 1e-8, "{k} {d}: {slope} {:?}", jets[k]);
                         let bend = (ahead[k].gradient - behind[k].gradient) / 2e-6;

@@ -1,14 +1,15 @@
 //! Weighted least squares by orthogonal columns, in memory that is reused.
 //!
 //! Modified Gram-Schmidt on the weighted columns loses digits with their condition, a factored moment matrix with its
-//! square; the enriched basis needs the difference. Dependent columns are found and left out. A column that is done is
-//! taken out of all later ones at once, many in registers, and no column is normalized.
+//! square; the enriched basis needs the difference. Dependent columns are found and left out.
 
-use super::orthogonal_columns::{LINES, NARROW, clean, parts, squared_length, subtract, write_some};
+use super::orthogonal_columns::{Columns, NARROW, parts};
 use super::settings::CollocationWeight;
 use crate::math::lanes::{Arch, GROUP, Lanes, Simd, WithSimd};
 use crate::math::{Matrix, Vector};
 
+/// Room for the derivatives of a column: gradient, second derivatives and value, at most 10 of them.
+pub(super) const LINES: usize = 2 * GROUP;
 /// Value and derivatives of a function of the basis at the center, lengths counted in support radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Column<const D: usize> {
@@ -175,16 +176,10 @@ impl<const D: usize> LeastSquares<D> {
         Arch::new().dispatch(WriteLines { fit: self, n_lines: n_lines + usize::from(has_values) });
     }
 
-    /// Value, if it was solved for, and derivatives by the value of neighbor `i`, after [`Self::solve`].
-    #[inline]
-    pub fn row(&self, i: usize) -> Column<D> {
-        let line = |d: usize| self.lines[d * self.roots.len() + i];
-        let second = |a: usize, b: usize| line(D + a * (2 * D - a - 1) / 2 + b);
-        Column {
-            value: line(D + D * (D + 1) / 2),
-            gradient: Vector::from_fn(|a, _| line(a)),
-            second_derivatives: Matrix::from_fn(|a, b| second(a.min(b), a.max(b))),
-        }
+    /// Gradients, second derivatives `a ≤ b` rows first, and values by the values of the neighbors, one list for each, after
+    /// [`Self::solve`].
+    pub fn lines(&self) -> impl Iterator<Item = &[f64]> {
+        self.lines.chunks_exact(self.roots.len().max(1)).map(|line| &line[..self.n_rows])
     }
 }
 
@@ -205,15 +200,16 @@ impl<const D: usize> WithSimd for FillMonomials<'_, D> {
         let rows = S::as_mut_simd_f64s(&mut fit.values).0.chunks_exact_mut(parts * fit.pitch);
         for (g, row) in rows.enumerate() {
             let row = &mut row[first * parts..];
-            for u in 0..parts {
-                let at = g * parts + u;
-                for (k, &(parent, axis)) in factors.iter().enumerate() {
-                    let before = match parent {
-                        None => roots[at],
-                        Some(p) => row[p * parts + u],
-                    };
-                    let x = offsets[axis * roots.len() + at];
-                    row[k * parts + u] = (Lanes::new(simd, before) * Lanes::new(simd, x)).get();
+            for (k, &(parent, axis)) in factors.iter().enumerate() {
+                let x = &offsets[axis * roots.len() + g * parts..][..parts];
+                let (before, own) = row.split_at_mut(k * parts);
+                let parent = match parent {
+                    None => &roots[g * parts..][..parts],
+                    Some(p) => &before[p * parts..][..parts],
+                };
+                let own = &mut own[..parts];
+                for u in 0..parts {
+                    own[u] = (Lanes::new(simd, parent[u]) * Lanes::new(simd, x[u])).get();
                 }
             }
         }
@@ -232,14 +228,13 @@ impl<const D: usize> WithSimd for CatchUp<'_, D> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { fit, first } = self;
         let n = fit.derivatives.len();
-        let values = S::as_mut_simd_f64s(&mut fit.values).0;
+        let mut columns = Columns::new(simd, &mut fit.values, fit.pitch);
         for k in first..n {
-            fit.lengths[k] = squared_length(simd, values, fit.pitch, k);
+            fit.lengths[k] = columns.squared_length(k);
         }
         for k in 0..fit.n_orthogonal {
             if fit.sizes[k] > 0.0 {
-                let shares = &mut fit.upper[k * fit.pitch..][..fit.pitch];
-                subtract(simd, values, fit.pitch, k, fit.sizes[k], shares, first, n);
+                columns.subtract(k, fit.sizes[k], &mut fit.upper[k * fit.pitch..][..fit.pitch], first..n);
             }
         }
     }
@@ -259,20 +254,18 @@ impl<const D: usize> WithSimd for Orthogonalize<'_, D> {
     fn with_simd<S: Simd>(self, simd: S) -> usize {
         let Self { fit, count, tolerance, is_twice } = self;
         let (n, pitch) = (fit.derivatives.len(), fit.pitch);
-        let values = S::as_mut_simd_f64s(&mut fit.values).0;
+        let mut columns = Columns::new(simd, &mut fit.values, pitch);
         let mut n_independent = 0;
         for k in fit.n_orthogonal..fit.n_orthogonal + count {
             if is_twice {
-                for first in (0..k).step_by(NARROW) {
-                    clean(simd, values, pitch, k, first, &fit.sizes, &mut fit.upper);
-                }
+                columns.clean(k, &fit.sizes, &mut fit.upper);
             }
-            let left = squared_length(simd, values, pitch, k);
+            let left = columns.squared_length(k);
             // Written so that NaN fails too.
             if left > tolerance * tolerance * fit.lengths[k] {
                 fit.sizes[k] = left;
                 n_independent += 1;
-                subtract(simd, values, pitch, k, left, &mut fit.upper[k * pitch..][..pitch], k + 1, n);
+                columns.subtract(k, left, &mut fit.upper[k * pitch..][..pitch], k + 1..n);
             }
         }
         fit.n_orthogonal += count;
@@ -293,16 +286,15 @@ impl<const D: usize> WithSimd for WriteLines<'_, D> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { fit, n_lines } = self;
         substitute(simd, fit, n_lines);
-        let roots = S::as_simd_f64s(&fit.roots).0;
-        let values = S::as_simd_f64s(&fit.values).0;
-        let lines = S::as_mut_simd_f64s(&mut fit.lines).0;
+        let (roots, lines) = (S::as_simd_f64s(&fit.roots).0, S::as_mut_simd_f64s(&mut fit.lines).0);
+        let columns = Columns::new(simd, &mut fit.values, fit.pitch);
         let mut first = 0;
         while first + 3 <= n_lines {
-            write_some::<S, 3>(simd, &fit.coefficients, values, fit.pitch, roots, lines, first);
+            columns.combine::<3>(&fit.coefficients, first, roots, lines);
             first += 3;
         }
         while first < n_lines {
-            write_some::<S, 1>(simd, &fit.coefficients, values, fit.pitch, roots, lines, first);
+            columns.combine::<1>(&fit.coefficients, first, roots, lines);
             first += 1;
         }
     }
@@ -338,3 +330,6 @@ fn substitute<S: Simd, const D: usize>(simd: S, fit: &mut LeastSquares<D>, n_lin
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,7 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::obstacles::Opaque;
-use crate::geometry::tree::BoxTree;
+use crate::geometry::point_tree::PointTree;
 use crate::math::Vector;
 use crate::nodes::cloud::Cloud;
 use std::sync::Arc;
@@ -11,18 +11,27 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct VisibleNodes<const D: usize> {
     cloud: Cloud<D>,
-    tree: BoxTree<D>,
+    tree: PointTree<D>,
     obstacles: Arc<dyn Opaque<D> + Send>,
     /// Diagonal of the box around all nodes.
     extent: f64,
+    /// Farthest that a node looks from besides its position.
+    shift: f64,
 }
+
+/// The first radius that is searched over that of a ball with room for the nodes wanted, and growth from search to search:
+/// a surface, an edge or a corner takes away half of a ball, and then half of that.
+const FIRST: f64 = 1.08;
+const GROWTH: f64 = 1.25;
 
 impl<const D: usize> VisibleNodes<D> {
     /// Makes the tree.
     pub fn new(cloud: Cloud<D>, obstacles: Arc<dyn Opaque<D> + Send>) -> Self {
-        let tree = BoxTree::of_points(&cloud.positions);
+        let tree = PointTree::new(&cloud.positions);
         let extent = Aabb::of_points(cloud.positions.iter().copied()).size().norm();
-        Self { cloud, tree, obstacles, extent }
+        let shifts = cloud.positions.iter().zip(&cloud.sights).map(|(p, s)| (p - s).norm());
+        let shift = shifts.fold(0.0, f64::max);
+        Self { cloud, tree, obstacles, extent, shift }
     }
 
     /// The nodes.
@@ -30,8 +39,8 @@ impl<const D: usize> VisibleNodes<D> {
         &self.cloud
     }
 
-    /// Squared distances and indices of the nodes that are seen from `sight`, nearest to `at` first and without `own`; returns
-    /// the support radius.
+    /// Squared distances and indices of the nodes that are seen from `sight`, without `own` and in no order; returns the
+    /// support radius.
     ///
     /// The support is the largest one that holds no more than `wanted` nodes [C3D, after Eq. 12].
     pub fn nearest_into(
@@ -42,57 +51,48 @@ impl<const D: usize> VisibleNodes<D> {
         wanted: usize,
         found: &mut Vec<(f64, u32)>,
     ) -> f64 {
-        let spacing = own.map_or_else(|| self.spacing_near(at), |i| self.cloud.spacings[i as usize]);
+        let spacing = own.map_or_else(|| self.spacing_near(at, found), |i| self.cloud.spacings[i as usize]);
         let needed = wanted - usize::from(own.is_some());
-        let mut radius = 1.15 * spacing * ball_radius::<D>(wanted);
+        let mut radius = FIRST * spacing * ball_radius::<D>(wanted);
         loop {
-            found.clear();
-            let r2 = radius * radius;
-            self.tree.visit(&Aabb::around(at, Vector::repeat(radius)), |j| {
-                let d2 = (self.cloud.positions[j as usize] - at).norm_squared();
-                if d2 <= r2 && own != Some(j) {
-                    found.push((d2, j));
-                }
-            });
+            self.tree.within_into(at, radius, found);
+            found.retain(|f| own != Some(f.1));
             let is_all = radius > self.extent;
             if found.len() > needed || is_all {
-                found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                let mut n_visible = 0;
-                found.retain(|&(_, j)| {
-                    let keep = n_visible <= needed && self.obstacles.visible(sight, self.cloud.sights[j as usize]);
-                    n_visible += usize::from(keep);
-                    keep
-                });
-                if n_visible > needed || is_all {
+                let around = Aabb::around(at, Vector::repeat(radius + self.shift)).including(sight);
+                if !self.obstacles.is_clear(&around) {
+                    found.retain(|&(_, j)| self.obstacles.visible(sight, self.cloud.sights[j as usize]));
+                }
+                if found.len() > needed || is_all {
                     break;
                 }
             }
-            radius *= 1.25;
+            radius *= GROWTH;
         }
         if found.len() <= needed {
             // The whole body: the farthest node keeps a small weight.
-            return 1.1 * found.last().map_or(radius, |last| last.0.sqrt());
+            let farthest = found.iter().map(|f| f.0).reduce(f64::max);
+            return 1.1 * farthest.map_or(radius, f64::sqrt);
         }
-        let limit = found[needed].0;
+        let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let limit = found.select_nth_unstable_by(needed, order).1.0;
         // Nodes as far as the first one that is left out have no weight.
-        let kept = found.partition_point(|f| f.0 < limit);
-        found.truncate(kept);
+        found.truncate(needed);
+        found.retain(|f| f.0 < limit);
         limit.sqrt()
     }
 
     /// Spacing of a node near a point.
-    fn spacing_near(&self, at: Vector<D>) -> f64 {
+    fn spacing_near(&self, at: Vector<D>, found: &mut Vec<(f64, u32)>) -> f64 {
         let mut radius = self.extent / (self.cloud.len() as f64).powf(1.0 / D as f64);
         loop {
-            let mut nearest = (f64::INFINITY, radius);
-            self.tree.visit(&Aabb::around(at, Vector::repeat(radius)), |j| {
-                let d2 = (self.cloud.positions[j as usize] - at).norm_squared();
-                if d2 < nearest.0 {
-                    nearest = (d2, self.cloud.spacings[j as usize]);
-                }
-            });
-            if nearest.0.is_finite() || radius > self.extent {
-                return nearest.1;
+            self.tree.within_into(at, radius, found);
+            let nearest = found.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            if let Some((_, j)) = nearest {
+                return self.cloud.spacings[*j as usize];
+            }
+            if radius > self.extent {
+                return radius;
             }
             radius *= 2.0;
         }

@@ -46,6 +46,13 @@ impl<const D: usize> Aabb<D> {
         (0..D).all(|d| self.lower[d] <= other.upper[d] && other.lower[d] <= self.upper[d])
     }
 
+    /// Squared distance of a point; zero inside.
+    #[inline]
+    pub fn squared_distance(&self, p: &Vector<D>) -> f64 {
+        let outside = |d: usize| (self.lower[d] - p[d]).max(p[d] - self.upper[d]).max(0.0);
+        (0..D).map(|d| outside(d) * outside(d)).sum()
+    }
+
     /// Whether a point lies in the closed box.
     #[inline]
     pub fn contains(&self, p: &Vector<D>) -> bool {

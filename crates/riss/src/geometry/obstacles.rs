@@ -55,11 +55,20 @@ impl Obstacles {
 pub trait Opaque<const D: usize>: Sync {
     /// Whether nothing cuts the segment from `from` to `to`; touching at an end does not cut.
     fn visible(&self, from: Vector<D>, to: Vector<D>) -> bool;
+
+    /// Whether nothing in a box can hide anything; false if that is not known.
+    fn is_clear(&self, _bounds: &Aabb<D>) -> bool {
+        false
+    }
 }
 
 impl Opaque<2> for Obstacles {
     fn visible(&self, from: Vector2, to: Vector2) -> bool {
         Obstacles::visible(self, from, to)
+    }
+
+    fn is_clear(&self, bounds: &Aabb<2>) -> bool {
+        self.tree.is_clear(bounds)
     }
 }
 
@@ -86,6 +95,10 @@ impl OpaqueTriangles {
 impl Opaque<3> for OpaqueTriangles {
     fn visible(&self, from: Vector3, to: Vector3) -> bool {
         !self.tree.any_along(from, to, |i| cuts_segment(self.triangles[i as usize], from, to))
+    }
+
+    fn is_clear(&self, bounds: &Aabb<3>) -> bool {
+        self.tree.is_clear(bounds)
     }
 }
 

@@ -141,7 +141,7 @@ fn check_enriched<const D: usize>() {
             let (mut g, mut s) = (Vector::<D>::zeros(), Matrix::<D>::zeros());
             for (n, &j) in shape.neighbors.iter().enumerate() {
                 let p = mls.cloud().positions[j as usize];
-                let value = frame.values(p, 0.0)[k];
+                let value = frame.values(p, [1.0, 0.0])[k];
                 g += shape.gradients[n] * value;
                 s += shape.second_derivatives[n] * value;
             }
