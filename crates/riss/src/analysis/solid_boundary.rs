@@ -9,10 +9,10 @@ use crate::nodes::solid::SolidSpacing;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-/// Triangles at most; where more would be as fine as the nodes, they are larger.
+/// Triangles at most, unless the body has more; where more would be as fine as the nodes, they are larger.
 const MOST_TRIANGLES: usize = 24_000;
-/// How much larger they get in a round.
-const COARSER: f64 = 1.3;
+/// How much larger they get in a round: edges are halved, so that less could change nothing.
+const COARSER: f64 = 2.0;
 /// An edge is cut by a crack where that is further than this from its ends, over its length.
 const LEAST_PART: f64 = 0.02;
 /// Halvings that find where an edge is cut.
@@ -46,13 +46,16 @@ struct Skin {
 /// Evaluates a solution on the boundary.
 pub(super) fn boundary_fields(solved: &Solved, model: &SolidModel, spacing: &SolidSpacing) -> BoundaryFields {
     let mut factor = 1.0;
-    let skin = loop {
-        let skin = Skin::new(model, &|p| factor * spacing.at(p));
-        if skin.triangles.len() <= MOST_TRIANGLES {
-            break skin;
-        }
+    let mut skin = Skin::new(model, &|p| factor * spacing.at(p));
+    while skin.triangles.len() > MOST_TRIANGLES {
         factor *= COARSER;
-    };
+        let coarser = Skin::new(model, &|p| factor * spacing.at(p));
+        // The body itself may have more.
+        if coarser.triangles.len() >= skin.triangles.len() {
+            break;
+        }
+        skin = coarser;
+    }
     let unknown = (Vector3::repeat(f64::NAN), Matrix::repeat(f64::NAN));
     let one = |(fit, shape): &mut (FitBuffer<3>, ShapeFunctions<3>), k: usize| {
         let found: Result<_> = solved.at(skin.positions[k], skin.sights[k], fit, shape);
