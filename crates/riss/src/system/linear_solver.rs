@@ -158,14 +158,15 @@ fn factor_cholesky<T: ComplexField + faer::traits::RealField>(
     let order: Vec<usize> = order.iter().flat_map(|&i| [2 * i as usize, 2 * i as usize + 1]).collect();
     let symbolic = symbolic_factor(&sparse, &order, &invert(&order))?;
     let mut values = vec![T::zero_impl(); symbolic.len_val()];
-    let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, Default::default()));
+    let threads = Par::rayon(0);
+    let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<T>(threads, Default::default()));
     symbolic
         .factorize_numeric_llt(
             &mut values,
             sparse.as_ref(),
             Side::Upper,
             LltRegularization::default(),
-            Par::Seq,
+            threads,
             MemStack::new(&mut memory),
             Default::default(),
         )
