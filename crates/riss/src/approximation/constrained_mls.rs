@@ -107,6 +107,11 @@ impl<const D: usize> ConstrainedMls<D> {
         self.nodes.cloud()
     }
 
+    /// The nearest node that sees a point, with working memory; none if no node does.
+    pub fn nearest(&self, at: Vector<D>, found: &mut Vec<(f64, u32)>) -> Option<u32> {
+        self.nodes.nearest(at, found)
+    }
+
     /// Number of nodes of a support, its center included.
     pub fn support_size(&self) -> usize {
         self.settings.neighbors.unwrap_or_else(|| default_neighbors::<D>(self.basis.len()))

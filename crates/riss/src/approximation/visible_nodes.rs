@@ -82,6 +82,22 @@ impl<const D: usize> VisibleNodes<D> {
         limit.sqrt()
     }
 
+    /// The nearest node that sees a point, with working memory; none if no node does.
+    pub fn nearest(&self, at: Vector<D>, found: &mut Vec<(f64, u32)>) -> Option<u32> {
+        let mut radius = self.spacing_near(at, found);
+        loop {
+            self.tree.within_into(at, radius, found);
+            found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let is_clear = self.obstacles.is_clear(&Aabb::around(at, Vector::repeat(radius + self.shift)));
+            let sees = |j: u32| is_clear || self.obstacles.visible(at, self.cloud.sights[j as usize]);
+            let nearest = found.iter().map(|f| f.1).find(|j| sees(*j));
+            if nearest.is_some() || radius > self.extent {
+                return nearest;
+            }
+            radius *= GROWTH;
+        }
+    }
+
     /// Spacing of a node near a point.
     fn spacing_near(&self, at: Vector<D>, found: &mut Vec<(f64, u32)>) -> f64 {
         let mut radius = self.extent / (self.cloud.len() as f64).powf(1.0 / D as f64);

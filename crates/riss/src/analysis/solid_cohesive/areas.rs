@@ -30,7 +30,7 @@ impl FaceArea {
 pub(super) fn face_areas(
     model: &SolidModel,
     crack: usize,
-    cohesive: &CohesiveCrack,
+    cohesive: Option<&CohesiveCrack>,
     positions: &[Vector3],
     spacing: &SolidSpacing,
 ) -> Vec<FaceArea> {
@@ -51,7 +51,7 @@ pub(super) fn face_areas(
             if model.body.contains(p)
                 && let Some(pair) = nearest(p)
             {
-                found.push((pair, area, !cohesive.is_notch(p)));
+                found.push((pair, area, cohesive.is_some_and(|c| !c.is_notch(p))));
             }
         }
         found

@@ -1,10 +1,22 @@
 //! The body between its opened pairs: tractions and work as linear functions of load and openings.
+//!
+//! By the principle of virtual work: what the displacements of an opening do against the stresses of all others, over the
+//! area that the pair stands for, is the traction at it. Forces and moments on both sides of a crack are then in balance
+//! however few nodes the ligament has left, which tractions of the strong form, taken node by node, are not.
 
+use super::areas::FaceArea;
+use super::energy::Energy;
+use super::free_faces::FreeFaces;
 use super::work::Work;
 use crate::error::Result;
+use crate::integration::NodeCells;
 use crate::math::{Vector, Vector3};
-use crate::system::{Collocation, CollocationSystem, PreparedSolver, TiedFaces};
+use crate::system::{Collocation, CollocationSystem, PreparedSolver, SolverEffort, TiedFaces};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
+
+/// No pair stands for less than this share of the area nearest to it.
+const LEAST_AREA: f64 = 0.2;
 
 /// Which openings are unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,13 +35,16 @@ pub(super) struct Condensed {
     pub rows: Vec<usize>,
     /// First column of each pair, and the end of the last.
     pub columns: Vec<usize>,
+    /// Area that each pair stands for [area].
+    pub areas: Vec<f64>,
     /// Traction of the load [stress].
     by_load: Vec<f64>,
     /// Traction of each opening of unit size [stress/length]: column by column.
     by_opening: Vec<Vec<f64>>,
-    /// Work conjugates of the load: what loads and reactions do [stress·length³] for a unit load factor and unit openings.
-    work_by_load: [f64; 2],
-    work_by_opening: Vec<[f64; 2]>,
+    /// Work of the loads, and of the reactions to a unit load factor, on each opening of unit size and, last, on what the load
+    /// does [stress·length³].
+    of_loads: Vec<f64>,
+    of_reactions: Vec<f64>,
 }
 
 /// A tied body, ready to be solved.
@@ -37,6 +52,32 @@ pub(super) struct TiedBody<'a> {
     pub tied: &'a TiedFaces<3>,
     pub solver: PreparedSolver<'a, 3>,
     pub work: Work,
+    cells: NodeCells,
+}
+
+/// Displacements under the load and under openings of unit size, as far as they were asked for.
+#[derive(Default)]
+pub(super) struct UnitFields {
+    of_load: Vec<f64>,
+    /// By pair and direction.
+    of_openings: Vec<Vec<Vec<f64>>>,
+}
+
+impl UnitFields {
+    /// Solves for what is missing.
+    fn complete(&mut self, body: &TiedBody<'_>, parting: Parting) -> Result<()> {
+        if self.of_load.is_empty() {
+            self.of_load = body.solve(1.0, &[])?.0;
+            self.of_openings = vec![vec![]; body.tied.pairs.len()];
+        }
+        let missing: Vec<_> = (0..body.tied.pairs.len())
+            .flat_map(|k| (self.of_openings[k].len()..body.n_columns(k, parting)).map(move |d| (k, d)))
+            .collect();
+        let one = |(k, d): &(usize, usize)| Ok(body.solve(0.0, &[(*k, body.tied.pairs[*k].directions[*d])])?.0);
+        let solved = missing.par_iter().map(one).collect::<Result<Vec<_>>>()?;
+        missing.into_iter().zip(solved).for_each(|((k, _), field)| self.of_openings[k].push(field));
+        Ok(())
+    }
 }
 
 impl<'a> TiedBody<'a> {
@@ -49,20 +90,17 @@ impl<'a> TiedBody<'a> {
         system: &CollocationSystem<3>,
         tied: &'a TiedFaces<3>,
         work: Work,
+        cells: NodeCells,
     ) -> Result<Self> {
         let border = tied.tied_motions(collocation.free_motions(&system.fixed)?);
-        Ok(Self { tied, solver: collocation.prepare(&tied.system, border)?, work })
+        Ok(Self { tied, solver: collocation.prepare(&tied.system, border)?, work, cells })
     }
 
     /// Displacements of a load factor with openings.
     ///
     /// # Errors
     /// Those of the solver.
-    pub fn solve(
-        &self,
-        load_factor: f64,
-        openings: &[(usize, Vector3)],
-    ) -> Result<(Vec<f64>, crate::system::SolverEffort)> {
+    pub fn solve(&self, load_factor: f64, openings: &[(usize, Vector3)]) -> Result<(Vec<f64>, SolverEffort)> {
         let mut right: Vec<f64> = self.tied.system.load.iter().map(|f| f * load_factor).collect();
         openings.iter().for_each(|(pair, w)| self.tied.open(*pair, *w, &mut right));
         let (mut displacements, effort) = self.solver.solve(&right)?;
@@ -72,6 +110,14 @@ impl<'a> TiedBody<'a> {
         Ok((displacements, effort))
     }
 
+    fn n_columns(&self, pair: usize, parting: Parting) -> usize {
+        match parting {
+            Parting::Normal => 1,
+            Parting::Full => self.tied.pairs[pair].directions.len(),
+        }
+    }
+
+    /// Tractions of the strong form, of all pairs.
     fn tractions(&self, displacements: &[f64], load_factor: f64) -> Vec<f64> {
         let pairs = 0..self.tied.pairs.len();
         pairs.flat_map(|pair| self.tied.traction(pair, displacements, load_factor)).collect()
@@ -81,29 +127,64 @@ impl<'a> TiedBody<'a> {
 impl Condensed {
     /// Solves for the load and for each opening.
     ///
+    /// - `areas`: of each pair
+    /// - `fields`: those that are known; it gets the others
+    ///
     /// # Errors
-    /// Those of the solver.
-    pub fn new(body: &TiedBody<'_>, parting: Parting) -> Result<Self> {
-        let (mut rows, mut columns, mut unit) = (vec![0], vec![0], vec![]);
+    /// Those of the solver and of the shape functions.
+    pub fn new(
+        body: &TiedBody<'_>,
+        collocation: &Collocation<3>,
+        parting: Parting,
+        areas: &[FaceArea],
+        free: &FreeFaces,
+        known: &mut UnitFields,
+    ) -> Result<Self> {
+        known.complete(body, parting)?;
+        let (mut rows, mut columns, mut fields) = (vec![0], vec![0], vec![]);
         for (k, pair) in body.tied.pairs.iter().enumerate() {
-            let n = match parting {
-                Parting::Normal => 1,
-                Parting::Full => pair.directions.len(),
-            };
+            let n = body.n_columns(k, parting);
             rows.push(rows[k] + pair.directions.len());
             columns.push(columns[k] + n);
-            unit.extend(pair.directions[..n].iter().map(|e| (k, *e)));
+            fields.extend(&known.of_openings[k][..n]);
         }
-        let (displacements, _) = body.solve(1.0, &[])?;
-        let by_load = body.tractions(&displacements, 1.0);
-        let work_by_load = body.work.of(&displacements);
-        let one = |opening: &(usize, Vector3)| {
-            let (displacements, _) = body.solve(0.0, &[*opening])?;
-            Ok((body.tractions(&displacements, 0.0), body.work.of(&displacements)))
-        };
-        let solved = unit.par_iter().map(one).collect::<Result<Vec<_>>>()?;
-        let (by_opening, work_by_opening) = solved.into_iter().unzip();
-        Ok(Self { rows, columns, by_load, by_opening, work_by_load, work_by_opening })
+        fields.push(&known.of_load);
+        let last = fields.len() - 1;
+        let all = DMatrix::from_fn(fields.len(), known.of_load.len(), |field, dof| fields[field][dof]);
+        let energy = Energy::new(collocation, &body.cells, &all)?;
+        let of_field = |k: usize| body.work.of(fields[k]) + free.work(fields[k]) + energy.body_work[k];
+        let of_loads: Vec<f64> = (0..=last).into_par_iter().map(of_field).collect();
+        let mut tractions: Vec<Vec<f64>> = fields
+            .par_iter()
+            .enumerate()
+            .map(|(k, field)| body.tractions(field, if k == last { 1.0 } else { 0.0 }))
+            .collect();
+        let mut own_areas = vec![];
+        for (pair, area) in areas.iter().enumerate() {
+            let (rows, directions) = (rows[pair]..rows[pair + 1], &body.tied.pairs[pair].directions);
+            for (row, column) in rows.clone().zip(columns[pair]..columns[pair + 1]) {
+                let (direction, normal) = (directions[row - rows.start], directions[0]);
+                // What is left of the mean gradient, by Gauss' theorem, is the opening that the field has on the ligament.
+                let opened = body.work.outside(fields[column]) - free.opened(fields[column]) - energy.gradients[column];
+                let whole = direction.dot(&(opened * normal));
+                let own = (whole - area.total + area.cohesive).max(LEAST_AREA * area.cohesive);
+                for (k, of_field) in tractions.iter_mut().enumerate() {
+                    let by_loads = if k == last { of_loads[column] } else { 0.0 };
+                    of_field[row] = (by_loads - energy.mutual[(column, k)]) / own;
+                }
+                if row == rows.start {
+                    own_areas.push(own);
+                }
+            }
+            // The strong form knows the mean over the area of the pair.
+            for row in rows.skip(columns[pair + 1] - columns[pair]) {
+                tractions.iter_mut().for_each(|t| t[row] /= area.share());
+            }
+        }
+        let by_load = tractions.pop().unwrap_or_default();
+        let mut of_reactions: Vec<f64> = energy.mutual.row(last).iter().copied().collect();
+        of_reactions[last] -= of_loads[last];
+        Ok(Self { rows, columns, areas: own_areas, by_load, by_opening: tractions, of_loads, of_reactions })
     }
 
     /// Number of pairs.
@@ -130,14 +211,10 @@ impl Condensed {
         tractions
     }
 
-    /// Work conjugates of the load factor [stress·length³].
+    /// Work of unit loads, and of the reactions to a unit load factor, on the displacements [stress·length³].
     pub fn work(&self, load_factor: f64, openings: &[f64]) -> [f64; 2] {
-        let mut work = self.work_by_load.map(|v| v * load_factor);
-        for (own, w) in self.work_by_opening.iter().zip(openings) {
-            work[0] += own[0] * w;
-            work[1] += own[1] * w;
-        }
-        work
+        [&self.of_loads, &self.of_reactions]
+            .map(|of_fields| of_fields.iter().zip(openings.iter().chain([&load_factor])).map(|(a, b)| a * b).sum())
     }
 
     /// Components of a pair in a vector of all rows, zero where the pair has fewer.

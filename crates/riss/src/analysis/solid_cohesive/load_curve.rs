@@ -8,9 +8,6 @@ use crate::analysis::record::{GrowthEnd, GrowthEndKind, Observer};
 use crate::material::CohesiveLaw;
 use crate::math::Vector3;
 
-/// Where work and energies differ by more than this share of the work, supports of nodes are as large as the ligament.
-const IMBALANCE: f64 = 0.15;
-
 /// A path with its states.
 pub(super) struct Followed {
     pub curve: Vec<LoadPoint>,
@@ -33,8 +30,7 @@ pub(super) fn follow(
     bonds: &[Bond],
     observer: &mut dyn Observer,
 ) -> Followed {
-    let shares: Vec<f64> = bonds.iter().map(|b| b.area.share()).collect();
-    let mut path = Path::new(condensed, law, &shares);
+    let mut path = Path::new(condensed, law);
     let mut followed = Followed {
         curve: vec![LoadPoint::default()],
         states: vec![path.state.clone()],
@@ -55,7 +51,7 @@ pub(super) fn follow(
             + 0.5 * (path.state.load_factor + before.load_factor) * (now[0] - done[0])
             + 0.5 * (now[1] + done[1]) * rise;
         done = now;
-        let mut point = point(&path.state, work, law, bonds, now);
+        let mut point = point(&path.state, condensed, work, law, bonds, now);
         point.external_work = external_work;
         followed.curve.push(point);
         followed.states.push(path.state.clone());
@@ -75,16 +71,7 @@ pub(super) fn follow(
         }
         let end = |kind, reason: String| Some(GrowthEnd { kind, reason });
         let limit = loading.largest_displacement.filter(|u| point.displacement.abs() >= *u);
-        let imbalance = (point.external_work - point.elastic_energy - point.dissipated_energy) / point.external_work;
-        let ended = if imbalance.abs() > IMBALANCE {
-            end(
-                GrowthEndKind::Failed,
-                format!(
-                    "work and energy differ by {:.0} %: the nodes are too coarse for what is left of the ligament, use a smaller spacing",
-                    100.0 * imbalance.abs()
-                ),
-            )
-        } else if point.load.abs() <= loading.stop_load * greatest {
+        let ended = if point.load.abs() <= loading.stop_load * greatest {
             end(GrowthEndKind::LimitReached, format!("the load has fallen to {} of its peak", loading.stop_load))
         } else if let Some(limit) = limit {
             end(GrowthEndKind::LimitReached, format!("the displacement has reached {limit}"))
@@ -107,7 +94,14 @@ pub(super) fn follow(
 }
 
 /// Values of a state but for the external work.
-fn point(state: &CohesiveState, work: &Work, law: &CohesiveLaw, bonds: &[Bond], conjugates: [f64; 2]) -> LoadPoint {
+fn point(
+    state: &CohesiveState,
+    condensed: &Condensed,
+    work: &Work,
+    law: &CohesiveLaw,
+    bonds: &[Bond],
+    conjugates: [f64; 2],
+) -> LoadPoint {
     let [by_loads, by_reactions] = conjugates;
     let (load, displacement) = if work.prescribed > 0.0 {
         (by_reactions / work.prescribed, state.load_factor * work.prescribed)
@@ -117,7 +111,7 @@ fn point(state: &CohesiveState, work: &Work, law: &CohesiveLaw, bonds: &[Bond], 
     let mut point = LoadPoint { load_factor: state.load_factor, load, displacement, ..LoadPoint::default() };
     for (k, bond) in bonds.iter().enumerate().filter(|(k, _)| state.is_open[*k]) {
         point.crack_area += bond.area.cohesive;
-        point.dissipated_energy += bond.area.cohesive * law.dissipated(state.history[k]);
+        point.dissipated_energy += condensed.areas[k] * law.dissipated(state.history[k]);
     }
     // That of the body, and what bonds give back when they unload to the origin.
     point.elastic_energy = 0.5 * state.load_factor * (by_loads + by_reactions);

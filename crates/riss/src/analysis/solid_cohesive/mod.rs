@@ -1,11 +1,13 @@
 //! Cohesive cracks on given surfaces: tied until they reach their strength, then opening along the path of equilibrium.
 //!
-//! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with what loads do in
-//! [`work`] and the faces' areas in [`areas`]; [`path`], with its [`tangent`], then follows the
+//! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with [`energy`] between their
+//! displacement fields, what loads do in [`work`], and areas of faces in [`areas`] and [`free_faces`]; [`path`], with its [`tangent`], then follows the
 //! softening of all pairs at once, and [`load_curve`] records it. Surfaces that grow do so by [`growing`].
 
 mod areas;
 mod condensed;
+mod energy;
+mod free_faces;
 mod growing;
 mod load_curve;
 mod path;
@@ -18,11 +20,13 @@ use super::solid_growth::SolidGrowthSettings;
 use super::solid_record::SolidResult;
 use super::solid_static::{Placed, SolidSettings, Solved};
 use crate::error::Result;
+use crate::integration::NodeCells;
 use crate::math::{Vector, Vector3};
 use crate::model::{CohesiveModel, SolidModel};
 use crate::system::{CollocationSolution, CollocationSystem, TiedFaces, TiedPair};
 use areas::{FaceArea, face_areas};
-use condensed::{Condensed, Parting, TiedBody};
+use condensed::{Condensed, Parting, TiedBody, UnitFields};
+use free_faces::FreeFaces;
 use growing::Growing;
 pub use growing::GrownSurface;
 use load_curve::{Followed, follow};
@@ -157,7 +161,7 @@ fn traced(
     let mut placed = Placed::of(model, settings, observer)?;
     observer.stage(Stage::Assembly);
     let system = placed.collocation.assemble()?;
-    let (pairs, bonds) = bonds(model, &placed, &system, settings, growing);
+    let (pairs, bonds, free) = bonds(model, &placed, &system, settings, growing);
     if bonds.is_empty() && growing.is_some_and(Growing::may_grow) {
         // All of the surfaces are open: their fronts are those of an elastic solid.
         let elastic = SolidModel { cohesive: None, ..model.clone() };
@@ -166,17 +170,21 @@ fn traced(
     }
     let tied = TiedFaces::new(&placed.collocation, &system, pairs)?;
     let work = Work::new(model, &placed.collocation, &settings.spacing)?;
+    let cells = NodeCells::new(&model.body, &placed.collocation.approximation, &settings.spacing);
     observer.stage(Stage::Solve);
-    let body = TiedBody::new(&placed.collocation, &system, &tied, work)?;
+    let body = TiedBody::new(&placed.collocation, &system, &tied, work, cells)?;
     let solved = |u: Vec<f64>, effort| {
         let displacements = u.chunks_exact(3).map(Vector::from_column_slice).collect();
         CollocationSolution { displacements, effort }
     };
+    let areas: Vec<FaceArea> = bonds.iter().map(|b| b.area).collect();
     let slides = cohesive.law.shear_ratio > 0.0;
-    let mut condensed = Condensed::new(&body, if slides { Parting::Full } else { Parting::Normal })?;
+    let mut fields = UnitFields::default();
+    let mut condense = |parting| Condensed::new(&body, &placed.collocation, parting, &areas, &free, &mut fields);
+    let mut condensed = condense(if slides { Parting::Full } else { Parting::Normal })?;
     let mut followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds, observer);
     if !slides && followed.most_shear > STICKS * cohesive.law.strength {
-        condensed = Condensed::new(&body, Parting::Full)?;
+        condensed = condense(Parting::Full)?;
         followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds, observer);
     }
     if followed.is_stopped {
@@ -216,18 +224,18 @@ fn traced(
     Ok(Traced::Done(Some(Box::new(record))))
 }
 
-/// The pairs that are tied.
+/// The pairs that are tied, and what is free.
 fn bonds(
     model: &SolidModel,
     placed: &Placed,
     system: &CollocationSystem<3>,
     settings: &SolidSettings,
     growing: Option<&Growing<'_>>,
-) -> (Vec<TiedPair<3>>, Vec<Bond>) {
-    let (mut pairs, mut bonds) = (vec![], vec![]);
+) -> (Vec<TiedPair<3>>, Vec<Bond>, FreeFaces) {
+    let (mut pairs, mut bonds, mut free) = (vec![], vec![], FreeFaces::default());
     let positions = &placed.collocation.cloud().positions;
     for crack in 0..model.cracks.len() {
-        let Some(cohesive) = model.cohesive_crack(crack) else { continue };
+        let cohesive = model.cohesive_crack(crack);
         let own: Vec<usize> = (0..placed.pairs.len()).filter(|p| placed.pairs[*p].crack as usize == crack).collect();
         let places: Vec<Vector3> = own.iter().map(|p| positions[placed.pairs[*p].nodes[0] as usize]).collect();
         let areas = face_areas(model, crack, cohesive, &places, &settings.spacing);
@@ -242,10 +250,12 @@ fn bonds(
                 pairs.push(tied);
                 let near_front = growing.filter(|g| g.is_near_front(crack, place)).map(|_| place);
                 bonds.push(Bond { pair, area, near_front });
+            } else {
+                free.push(model, crack, nodes, place, normal, area.total);
             }
         }
     }
-    (pairs, bonds)
+    (pairs, bonds, free)
 }
 
 /// Points of the curve that get fields: evenly along it, as it is drawn, with the first, the peak and the last.
@@ -283,7 +293,7 @@ fn tractions(
 ) -> Vec<Vec<f64>> {
     let all = condensed.tractions(state.load_factor, &state.openings);
     let mut of_pair = vec![0.0; placed.pairs.len()];
-    bonds.iter().enumerate().for_each(|(k, b)| of_pair[b.pair] = condensed.of_pair(k, &all)[0] / b.area.share());
+    bonds.iter().enumerate().for_each(|(k, b)| of_pair[b.pair] = condensed.of_pair(k, &all)[0]);
     let of_crack = |crack: usize| {
         let pairs = placed.pairs.iter().zip(&of_pair).filter(|(p, _)| p.crack as usize == crack);
         let on_fronts = model.cracks[crack].fronts.iter().map(|f| f.points.len()).sum();

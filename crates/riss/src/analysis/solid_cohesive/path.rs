@@ -56,8 +56,6 @@ enum Target<'a> {
 pub(super) struct Path<'a> {
     pub(super) condensed: &'a Condensed,
     pub(super) law: &'a CohesiveLaw,
-    /// Share of each pair that is cohesive.
-    pub(super) shares: &'a [f64],
     pub state: CohesiveState,
     pub(super) tangent: Option<Tangent>,
     /// Pairs that the last step opened.
@@ -69,7 +67,7 @@ pub(super) struct Path<'a> {
 
 impl<'a> Path<'a> {
     /// At rest.
-    pub fn new(condensed: &'a Condensed, law: &'a CohesiveLaw, shares: &'a [f64]) -> Self {
+    pub fn new(condensed: &'a Condensed, law: &'a CohesiveLaw) -> Self {
         let n = condensed.n_pairs();
         let n_columns = condensed.columns[n];
         let state = CohesiveState {
@@ -79,7 +77,7 @@ impl<'a> Path<'a> {
             is_open: vec![false; n],
             shear: vec![[0.0; 2]; n],
         };
-        Self { condensed, law, shares, state, tangent: None, opened: vec![], first: 0.0, longest: LONGEST }
+        Self { condensed, law, state, tangent: None, opened: vec![], first: 0.0, longest: LONGEST }
     }
 
     /// Tractions of all pairs [stress].
@@ -89,7 +87,7 @@ impl<'a> Path<'a> {
 
     /// Loads up to the first pair that reaches its strength; none does if the answer is no.
     pub fn begin(&mut self) -> bool {
-        let most = (0..self.shares.len())
+        let most = (0..self.condensed.n_pairs())
             .map(|k| self.exhaustion(k, &self.condensed.tractions(1.0, &self.state.openings)))
             .fold(0.0, f64::max);
         if !(most > 0.0 && most.is_finite()) {
@@ -145,7 +143,7 @@ impl<'a> Path<'a> {
 
     /// How far a pair is exhausted.
     fn exhaustion(&self, pair: usize, tractions: &[f64]) -> f64 {
-        self.law.exhaustion(self.condensed.of_pair(pair, tractions).map(|t| t / self.shares[pair]))
+        self.law.exhaustion(self.condensed.of_pair(pair, tractions))
     }
 
     /// Traction of an opened pair and its derivative.
@@ -166,7 +164,7 @@ impl<'a> Path<'a> {
     /// Unknown columns.
     pub(super) fn open_columns(&self) -> Vec<(usize, usize)> {
         let columns = &self.condensed.columns;
-        let open = (0..self.shares.len()).filter(|k| self.state.is_open[*k]);
+        let open = (0..self.condensed.n_pairs()).filter(|k| self.state.is_open[*k]);
         open.flat_map(|k| (columns[k]..columns[k + 1]).map(move |c| (k, c))).collect()
     }
 
@@ -177,7 +175,7 @@ impl<'a> Path<'a> {
         let own = |(pair, column): &(usize, usize)| {
             let k = column - c.columns[*pair];
             let cohesion = self.cohesion(*pair, trial, trial.history[*pair]);
-            tractions[c.rows[*pair] + k] - self.shares[*pair] * cohesion.traction[k]
+            tractions[c.rows[*pair] + k] - cohesion.traction[k]
         };
         (unknown.iter().map(own).collect(), tractions)
     }
@@ -208,7 +206,7 @@ impl<'a> Path<'a> {
                 return c.by_load(row);
             }
             let (other, opening) = unknown[j];
-            let own = if other == pair { cohesion[i][k][opening - c.columns[pair]] * self.shares[pair] } else { 0.0 };
+            let own = if other == pair { cohesion[i][k][opening - c.columns[pair]] } else { 0.0 };
             c.by_opening(row, opening) - own
         })
     }
@@ -254,8 +252,8 @@ impl<'a> Path<'a> {
         let c = self.condensed;
         match target {
             Target::Reaches(pair) => {
-                let own = c.of_pair(*pair, tractions).map(|t| t / self.shares[*pair]);
-                let gradient = self.law.exhaustion_gradient(own).map(|g| g / self.shares[*pair]);
+                let own = c.of_pair(*pair, tractions);
+                let gradient = self.law.exhaustion_gradient(own);
                 let rows = c.rows[*pair]..c.rows[*pair + 1];
                 let along = |of_row: &dyn Fn(usize) -> f64| -> f64 {
                     rows.clone().enumerate().map(|(k, row)| gradient[k] * of_row(row)).sum()
@@ -308,14 +306,14 @@ impl<'a> Path<'a> {
     /// The tied pair that is furthest above its strength.
     fn most_exceeded(&self, trial: &CohesiveState) -> Option<usize> {
         let tractions = self.condensed.tractions(trial.load_factor, &trial.openings);
-        let tied = (0..self.shares.len()).filter(|k| !self.state.is_open[*k]);
+        let tied = (0..self.condensed.n_pairs()).filter(|k| !self.state.is_open[*k]);
         let (pair, most) = tied.map(|k| (k, self.exhaustion(k, &tractions))).max_by(|a, b| a.1.total_cmp(&b.1))?;
         (most > 1.0 + EXCESS).then_some(pair)
     }
 
     fn accept(&mut self, trial: CohesiveState, tangent: Tangent) {
         self.state = trial;
-        for pair in 0..self.shares.len() {
+        for pair in 0..self.condensed.n_pairs() {
             if self.state.is_open[pair] {
                 let effective = self.law.effective(self.condensed.opening_of(pair, &self.state.openings));
                 self.state.history[pair] = self.state.history[pair].max(effective);
@@ -328,12 +326,12 @@ impl<'a> Path<'a> {
     /// Opens the pairs at their strength.
     fn open_exhausted(&mut self) {
         let tractions = self.tractions();
-        self.opened = (0..self.shares.len())
+        self.opened = (0..self.condensed.n_pairs())
             .filter(|k| !self.state.is_open[*k] && self.exhaustion(*k, &tractions) >= 1.0 - TOGETHER)
             .collect();
         for pair in self.opened.clone() {
             let (first, strength) = (self.law.first_opening(), self.law.strength);
-            let [n, s, t] = self.condensed.of_pair(pair, &tractions).map(|t| t / self.shares[pair]);
+            let [n, s, t] = self.condensed.of_pair(pair, &tractions);
             self.state.is_open[pair] = true;
             self.state.history[pair] = first;
             // Whatever the pair bears when it opens, it bears still.

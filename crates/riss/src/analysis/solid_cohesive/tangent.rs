@@ -43,7 +43,7 @@ impl Path<'_> {
             let mut openings = vec![0.0; self.state.openings.len()];
             unknown.iter().zip(&right).for_each(|((_, column), v)| openings[*column] = *v);
             let mut changed = false;
-            for pair in (0..self.shares.len()).filter(|k| self.state.is_open[*k]) {
+            for pair in (0..c.n_pairs()).filter(|k| self.state.is_open[*k]) {
                 let (w, rate) = (c.opening_of(pair, &self.state.openings), c.opening_of(pair, &openings));
                 let loads = self.law.effective(w) >= history[pair];
                 let beta = self.law.shear_ratio.powi(2);
@@ -71,10 +71,10 @@ impl Path<'_> {
         let now = self.tractions();
         let rates = self.condensed.tractions(tangent.load_factor, &tangent.openings);
         let mut first: Option<(usize, f64)> = None;
-        for pair in (0..self.shares.len()).filter(|k| !self.state.is_open[*k]) {
-            let own = self.condensed.of_pair(pair, &now).map(|t| t / self.shares[pair]);
+        for pair in (0..self.condensed.n_pairs()).filter(|k| !self.state.is_open[*k]) {
+            let own = self.condensed.of_pair(pair, &now);
             let gradient = self.law.exhaustion_gradient(own);
-            let rate = self.condensed.of_pair(pair, &rates).map(|t| t / self.shares[pair]);
+            let rate = self.condensed.of_pair(pair, &rates);
             let growth: f64 = gradient.iter().zip(rate).map(|(g, r)| g * r).sum();
             let reach = (1.0 - self.law.exhaustion(own)) / growth;
             if growth > 0.0 && reach < first.map_or(length, |f| f.1) {

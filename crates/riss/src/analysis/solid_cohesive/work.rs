@@ -1,4 +1,4 @@
-//! What loads and reactions do: linear functions of the displacements, by integration over the boundary.
+//! What loads on the boundary do: linear functions of the displacements, by integration.
 
 use crate::approximation::{FitBuffer, ShapeFunctions};
 use crate::error::Result;
@@ -17,20 +17,23 @@ const SIGHT: f64 = 1e-3;
 /// Loads count as balanced if their sum is below this share of their sizes.
 const BALANCED: f64 = 1e-3;
 
-/// Work of unit loads on displacements, and of the reactions of displacements on the prescribed ones.
+/// Integrals over the boundary.
 pub(super) struct Work {
-    /// Coefficient of each displacement: of loads [stress·length²], of reactions the same.
-    coefficients: [Vec<Vector3>; 2],
+    /// What unit loads do on each displacement [stress·length²].
+    loads: Vec<Vector3>,
     /// Resultant of the loads: half of their sum of sizes where they balance [stress·length²].
     pub resultant: f64,
     /// Largest prescribed displacement [length].
     pub prescribed: f64,
+    /// By component of the displacement of each node: what it adds to the integral of `u ⊗ n` in the directions that are
+    /// free [area].
+    outside: Vec<[Matrix<3>; 3]>,
 }
 
 /// What a point of integration adds.
 struct Share {
     loads: Vec<(u32, Vector3)>,
-    reactions: Vec<(u32, Vector3)>,
+    outside: Vec<(u32, [Matrix<3>; 3])>,
     force: Vector3,
     prescribed: f64,
 }
@@ -63,37 +66,33 @@ impl Work {
             let conditions = &model.solid.parts[*part as usize];
             let sight = position - normal * (SIGHT * spacing.at(*position));
             let at = SurfacePoint { position: *position, normal: *normal, sight };
-            let mut share = Share { loads: vec![], reactions: vec![], force: Vector3::zeros(), prescribed: 0.0 };
+            let mut share = Share { loads: vec![], outside: vec![], force: Vector3::zeros(), prescribed: 0.0 };
             let (free, moved) = split(conditions, &at);
             let traction = free * conditions.traction.value(&at);
             share.prescribed = moved.norm();
-            if traction == Vector3::zeros() && share.prescribed == 0.0 {
-                return Ok(share);
-            }
             collocation.approximation.at_point(*position, sight, fit, shape)?;
             share.force = traction * *weight;
-            let (lambda, mu) = (collocation.solid.material.lame(), collocation.solid.material.shear());
             for (k, i) in shape.neighbors.iter().enumerate() {
+                let value = *weight * shape.values[k];
+                share.outside.push((*i, std::array::from_fn(|c| free.column(c) * normal.transpose() * value)));
                 share.loads.push((*i, share.force * shape.values[k]));
-                let g = &shape.gradients[k];
-                // (σ(u) n) · ū by each component of u.
-                let reaction =
-                    g * (lambda * moved.dot(normal)) + moved * (mu * g.dot(normal)) + normal * (mu * g.dot(&moved));
-                share.reactions.push((*i, reaction * *weight));
             }
             Ok(share)
         };
         let shares = points.par_iter().map_init(Default::default, share).collect::<Result<Vec<_>>>()?;
         let n = collocation.cloud().len();
         let mut work = Self {
-            coefficients: [vec![Vector3::zeros(); n], vec![Vector3::zeros(); n]],
+            loads: vec![Vector3::zeros(); n],
             resultant: 0.0,
             prescribed: 0.0,
+            outside: vec![[Matrix::zeros(); 3]; n],
         };
         let (mut sum, mut sizes) = (Vector3::zeros(), 0.0);
         for share in shares {
-            share.loads.iter().for_each(|(i, c)| work.coefficients[0][*i as usize] += c);
-            share.reactions.iter().for_each(|(i, c)| work.coefficients[1][*i as usize] += c);
+            share.loads.iter().for_each(|(i, c)| work.loads[*i as usize] += c);
+            for (i, outside) in share.outside {
+                work.outside[i as usize].iter_mut().zip(outside).for_each(|(a, b)| *a += b);
+            }
             sum += share.force;
             sizes += share.force.norm();
             work.prescribed = work.prescribed.max(share.prescribed);
@@ -102,12 +101,16 @@ impl Work {
         Ok(work)
     }
 
-    /// Work of unit loads on displacements, and of their reactions on the prescribed displacements [stress·length³].
-    pub fn of(&self, displacements: &[f64]) -> [f64; 2] {
-        self.coefficients.each_ref().map(|c| {
-            let at = |i: usize| Vector3::from_column_slice(&displacements[3 * i..3 * i + 3]);
-            c.iter().enumerate().filter(|(_, c)| **c != Vector3::zeros()).map(|(i, c)| c.dot(&at(i))).sum()
-        })
+    /// Work of unit loads on displacements [stress·length³].
+    pub fn of(&self, displacements: &[f64]) -> f64 {
+        let at_node = |(load, u): (&Vector3, &[f64])| load.dot(&Vector3::from_column_slice(u));
+        self.loads.iter().zip(displacements.chunks_exact(3)).map(at_node).sum()
+    }
+
+    /// The integral of `u ⊗ n` over the boundary, without the directions that are prescribed [length³].
+    pub fn outside(&self, displacements: &[f64]) -> Matrix<3> {
+        let of_node = |(own, u): (&[Matrix<3>; 3], &[f64])| own[0] * u[0] + own[1] * u[1] + own[2] * u[2];
+        self.outside.iter().zip(displacements.chunks_exact(3)).map(of_node).sum()
     }
 }
 
