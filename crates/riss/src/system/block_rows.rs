@@ -86,19 +86,24 @@ impl<const D: usize> BlockRows<D> {
 
     /// `y = A x`.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        y.par_chunks_mut(CHUNK * D).zip(&self.chunks).for_each(|(y, chunk)| {
-            for (i, y) in y.chunks_exact_mut(D).enumerate() {
+        self.multiply_lanes::<1>(x, y);
+    }
+
+    /// `y = A x` for `W` vectors at once, whose entries stand side by side.
+    pub fn multiply_lanes<const W: usize>(&self, x: &[f64], y: &mut [f64]) {
+        y.par_chunks_mut(CHUNK * D * W).zip(&self.chunks).for_each(|(y, chunk)| {
+            for (i, y) in y.chunks_exact_mut(D * W).enumerate() {
                 let (columns, blocks) = chunk.row(i);
-                let mut sum = [0.0; D];
+                let mut sum = [[0.0; W]; D];
                 for (&j, block) in columns.iter().zip(blocks) {
-                    let x = &x[j as usize * D..(j as usize + 1) * D];
+                    let x = &x[j as usize * D * W..(j as usize + 1) * D * W];
                     for a in 0..D {
                         for b in 0..D {
-                            sum[a] += block[a][b] * x[b];
+                            (0..W).for_each(|l| sum[a][l] += block[a][b] * x[b * W + l]);
                         }
                     }
                 }
-                y.copy_from_slice(&sum);
+                y.copy_from_slice(sum.as_flattened());
             }
         });
     }

@@ -52,7 +52,7 @@ impl<const D: usize> CoarseLevel<D> {
         let m = n_modes::<D>();
         let mut edge = vec![vec![0.0; n_groups * m]; border.len()];
         for (edge, border) in edge.iter_mut().zip(border) {
-            restrict(&groups, &factors, &free, border, edge);
+            restrict::<D, 1>(&groups, &factors, &free, border, edge);
             edge.iter_mut().zip(&is_used).filter(|(_, used)| !**used).for_each(|(e, _)| *e = 0.0);
         }
         let factor = SparseLu::new(scalar_rows(&blocks, &is_used, &edge, m))?;
@@ -64,22 +64,27 @@ impl<const D: usize> CoarseLevel<D> {
         self.is_used.len()
     }
 
-    /// `z = P A_c⁻¹ Pᵀ r`.
-    pub fn solve(&self, r: &[f64], z: &mut [f64]) {
-        let mut amplitudes = vec![0.0; self.is_used.len() + self.n_border];
-        restrict(&self.groups, &self.factors, &self.free, r, &mut amplitudes);
-        amplitudes.iter_mut().zip(&self.is_used).filter(|(_, used)| !**used).for_each(|(a, _)| *a = 0.0);
-        self.factor.solve_in_place(&mut amplitudes);
+    /// `z = P A_c⁻¹ Pᵀ r` for `W` vectors at once, whose entries stand side by side.
+    pub fn solve<const W: usize>(&self, r: &[f64], z: &mut [f64]) {
+        let mut amplitudes = vec![0.0; (self.is_used.len() + self.n_border) * W];
+        restrict::<D, W>(&self.groups, &self.factors, &self.free, r, &mut amplitudes);
+        let unused = amplitudes.chunks_exact_mut(W).zip(&self.is_used).filter(|(_, used)| !**used);
+        unused.for_each(|(a, _)| a.fill(0.0));
+        self.factor.solve_in_place::<W>(&mut amplitudes);
         let m = n_modes::<D>();
-        z.par_chunks_exact_mut(D).enumerate().for_each(|(i, z)| {
+        z.par_chunks_exact_mut(D * W).enumerate().for_each(|(i, z)| {
             let group = self.groups.of_node[i];
             if group == NO_GROUP {
                 z.fill(0.0);
                 return;
             }
-            let own = &amplitudes[group as usize * m..(group as usize + 1) * m];
-            let motion = Vector::<D>::from_fn(|a, _| (0..=D).map(|l| self.factors[i][l] * own[l * D + a]).sum());
-            z.copy_from_slice((self.free[i] * motion).as_slice());
+            let own = &amplitudes[group as usize * m * W..(group as usize + 1) * m * W];
+            for lane in 0..W {
+                let amplitude = |l: usize, a: usize| self.factors[i][l] * own[(l * D + a) * W + lane];
+                let motion = Vector::<D>::from_fn(|a, _| (0..=D).map(|l| amplitude(l, a)).sum());
+                let moved = self.free[i] * motion;
+                (0..D).for_each(|a| z[a * W + lane] = moved[a]);
+            }
         });
     }
 }
@@ -197,21 +202,23 @@ fn times<const D: usize>(block: &Block<D>, q: &Matrix<D>) -> Block<D> {
     std::array::from_fn(|a| std::array::from_fn(|b| (0..D).map(|c| block[a][c] * q[(c, b)]).sum()))
 }
 
-/// `Pᵀ r`, into the first entries of `amplitudes`.
-fn restrict<const D: usize>(
+/// `Pᵀ r` for `W` vectors at once, into the first entries of `amplitudes`.
+fn restrict<const D: usize, const W: usize>(
     groups: &Aggregates,
     factors: &[[f64; 4]],
     free: &[Matrix<D>],
     r: &[f64],
     amplitudes: &mut [f64],
 ) {
-    let m = n_modes::<D>();
+    let m = n_modes::<D>() * W;
     amplitudes[..groups.members.len() * m].par_chunks_exact_mut(m).zip(&groups.members).for_each(|(own, members)| {
         for &i in members {
             let i = i as usize;
-            let force = free[i] * Vector::<D>::from_column_slice(&r[i * D..(i + 1) * D]);
-            for l in 0..=D {
-                (0..D).for_each(|a| own[l * D + a] += factors[i][l] * force[a]);
+            for lane in 0..W {
+                let force = free[i] * Vector::<D>::from_fn(|a, _| r[(i * D + a) * W + lane]);
+                for l in 0..=D {
+                    (0..D).for_each(|a| own[(l * D + a) * W + lane] += factors[i][l] * force[a]);
+                }
             }
         }
     });

@@ -1,7 +1,6 @@
 //! Solution of the equations of collocation: direct for few nodes, two-level preconditioned IDR(4) for many.
 
 use super::aggregates::Aggregates;
-use super::block_rows::BlockRows;
 use super::coarse_level::CoarseLevel;
 use super::collocation::{Collocation, CollocationSystem};
 use super::collocation_settings::CollocationSolver;
@@ -12,7 +11,9 @@ use crate::error::{Error, Result};
 use crate::math::symmetric_eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector, axis};
 use crate::model::RigidMotion;
+use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 /// Up to this many nodes the direct solver is faster.
 const DIRECT_UP_TO: [usize; 2] = [12_000, 1_500];
@@ -29,6 +30,8 @@ const RESTART: usize = 80;
 /// Least and greatest number of nodes in a group of the coarse level, and groups wanted in between.
 const GROUP_SIZES: [usize; 2] = [150, 600];
 const GROUPS: usize = 500;
+/// Right-hand sides that are solved at once.
+const TOGETHER: usize = 8;
 /// Rigid motions are held if what fixes them is above this share of what fixes the firmest.
 const HELD: f64 = 1e-10;
 
@@ -164,14 +167,66 @@ impl<const D: usize> PreparedSolver<'_, D> {
         }
     }
 
+    /// Solves for many right-hand sides, [`TOGETHER`] at once; the factors are then read once for all of these.
+    ///
+    /// # Errors
+    /// Those of [`Self::solve`].
+    pub fn solve_all(&self, n: usize, right: impl Fn(usize) -> Vec<f64> + Sync) -> Result<Vec<Vec<f64>>> {
+        const W: usize = TOGETHER;
+        let of_group = |group: usize| {
+            let members: Vec<Vec<f64>> = (group * W..((group + 1) * W).min(n)).map(&right).collect();
+            let length = members[0].len();
+            let mut rights = vec![0.0; length * W];
+            for (l, right) in members.iter().enumerate() {
+                right.iter().enumerate().for_each(|(i, v)| rights[i * W + l] = *v);
+            }
+            let mut x = vec![0.0; length * W];
+            let matrix = |x: &[f64], y: &mut [f64]| self.multiply::<W>(x, y);
+            let mut r = vec![0.0; length * W];
+            match &self.factors {
+                Factors::Direct(factor) => self.refine::<W>(factor, &rights, &mut x),
+                Factors::Iterative { fine, coarse } => {
+                    let preconditioner = TwoLevel::<D, W>::new(self, coarse, fine);
+                    let limits = Limits { target: TARGET, iterations: MOST_ITERATIONS };
+                    krylov::idr::<W>(&matrix, &preconditioner, &rights, &mut x, limits);
+                }
+            }
+            krylov::residual(&matrix, &rights, &x, &mut r);
+            let (left, sizes) = (krylov::norms::<W>(&r), krylov::norms::<W>(&rights));
+            let solution = |(l, right): (usize, &Vec<f64>)| {
+                if left[l] <= ALLOWED * sizes[l] {
+                    return Ok((0..length).map(|i| x[i * W + l]).collect());
+                }
+                Ok(self.solve(right)?.0)
+            };
+            members.iter().enumerate().map(solution).collect::<Result<Vec<_>>>()
+        };
+        let groups: Vec<Vec<Vec<f64>>> = (0..n.div_ceil(W)).into_par_iter().map(of_group).collect::<Result<_>>()?;
+        Ok(groups.into_iter().flatten().collect())
+    }
+
+    /// `y = (A + Σ b bᵀ) x`.
+    fn multiply<const W: usize>(&self, x: &[f64], y: &mut [f64]) {
+        self.system.tangent.multiply_lanes::<W>(x, y);
+        for b in &self.border {
+            let mut along = [0.0; W];
+            for (x, b) in x.chunks_exact(W).zip(b) {
+                (0..W).for_each(|l| along[l] += x[l] * b);
+            }
+            for (y, b) in y.chunks_exact_mut(W).zip(b) {
+                (0..W).for_each(|l| y[l] += along[l] * b);
+            }
+        }
+    }
+
     fn solve_iteratively(
         &self,
         fine: &IncompleteFactor<D>,
         coarse: &CoarseLevel<D>,
         right: &[f64],
     ) -> Result<(Vec<f64>, SolverEffort)> {
-        let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&self.system.tangent, &self.border, x, y);
-        let preconditioner = TwoLevel { matrix: &matrix, coarse, fine };
+        let matrix = |x: &[f64], y: &mut [f64]| self.multiply::<1>(x, y);
+        let preconditioner = TwoLevel::<D, 1>::new(self, coarse, fine);
         let mut x = vec![0.0; right.len()];
         let (method, progress) = iterate(&matrix, &preconditioner, right, &mut x);
         if !(progress.residual <= ALLOWED) {
@@ -196,19 +251,24 @@ impl<const D: usize> PreparedSolver<'_, D> {
         Ok((x, effort))
     }
 
+    /// Solves with two steps of refinement: the pivots are chosen for few entries too.
+    fn refine<const W: usize>(&self, factor: &SparseLu, right: &[f64], x: &mut [f64]) {
+        let matrix = |x: &[f64], y: &mut [f64]| self.multiply::<W>(x, y);
+        let mut r = vec![0.0; right.len()];
+        for _ in 0..3 {
+            krylov::residual(&matrix, right, x, &mut r);
+            let mut step = r.clone();
+            step.resize(right.len() + self.border.len() * W, 0.0);
+            factor.solve_in_place::<W>(&mut step);
+            step.truncate(right.len());
+            krylov::add(x, 1.0, &step);
+        }
+    }
+
     fn solve_directly(&self, factor: &SparseLu, right: &[f64]) -> Result<(Vec<f64>, SolverEffort)> {
         let (mut x, mut r) = (vec![0.0; right.len()], vec![0.0; right.len()]);
-        let matrix = |x: &[f64], y: &mut [f64]| multiply_bordered(&self.system.tangent, &self.border, x, y);
-        // Two steps of refinement: the pivots are chosen for few entries too.
-        for _ in 0..3 {
-            krylov::residual(&matrix, right, &x, &mut r);
-            let mut step = r.clone();
-            step.resize(right.len() + self.border.len(), 0.0);
-            factor.solve_in_place(&mut step);
-            step.truncate(right.len());
-            krylov::add(&mut x, 1.0, &step);
-        }
-        krylov::residual(&matrix, right, &x, &mut r);
+        self.refine::<1>(factor, right, &mut x);
+        krylov::residual(&|x: &[f64], y: &mut [f64]| self.multiply::<1>(x, y), right, &x, &mut r);
         let residual = krylov::norm(&r) / krylov::norm(right).max(f64::MIN_POSITIVE);
         if !(residual <= ALLOWED) {
             return Err(Error::Residual { residual, allowed: ALLOWED });
@@ -241,7 +301,7 @@ fn iterate(
     };
     let limits = Limits { target: TARGET, iterations: MOST_ITERATIONS };
     for _ in 0..STARTS {
-        let found = krylov::idr(matrix, preconditioner, right, x, limits);
+        let found = krylov::idr::<1>(matrix, preconditioner, right, x, limits);
         let residual = check(x, &mut total, found.iterations);
         if residual <= ALLOWED {
             return ("IDR(4)", total);
@@ -259,19 +319,29 @@ fn iterate(
 }
 
 /// Coarse correction first, then the incomplete factors on what is left.
-struct TwoLevel<'a, const D: usize> {
-    matrix: &'a dyn LinearMap,
+struct TwoLevel<'a, const D: usize, const W: usize> {
+    solver: &'a PreparedSolver<'a, D>,
     coarse: &'a CoarseLevel<D>,
     fine: &'a IncompleteFactor<D>,
+    /// Working memory, of one thread at a time.
+    memory: Mutex<[Vec<f64>; 2]>,
 }
 
-impl<const D: usize> LinearMap for TwoLevel<'_, D> {
+impl<'a, const D: usize, const W: usize> TwoLevel<'a, D, W> {
+    fn new(solver: &'a PreparedSolver<'a, D>, coarse: &'a CoarseLevel<D>, fine: &'a IncompleteFactor<D>) -> Self {
+        let n = solver.system.load.len() * W;
+        Self { solver, coarse, fine, memory: Mutex::new([vec![0.0; n], vec![0.0; n]]) }
+    }
+}
+
+impl<const D: usize, const W: usize> LinearMap for TwoLevel<'_, D, W> {
     fn apply(&self, r: &[f64], z: &mut [f64]) {
-        let (mut rest, mut fine) = (vec![0.0; r.len()], vec![0.0; r.len()]);
-        self.coarse.solve(r, z);
-        krylov::residual(self.matrix, r, z, &mut rest);
-        self.fine.solve(&rest, &mut fine);
-        krylov::add(z, 1.0, &fine);
+        let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let [rest, fine] = &mut *memory;
+        self.coarse.solve::<W>(r, z);
+        krylov::residual(&|x: &[f64], y: &mut [f64]| self.solver.multiply::<W>(x, y), r, z, rest);
+        self.fine.solve::<W>(rest, fine);
+        krylov::add(z, 1.0, fine);
     }
 }
 
@@ -283,14 +353,6 @@ fn parts(n: usize) -> Vec<Range<usize>> {
 
 /// Most nodes in a part.
 const PART_NODES: usize = 1_000_000;
-
-/// `y = (A + Σ b bᵀ) x`.
-fn multiply_bordered<const D: usize>(matrix: &BlockRows<D>, border: &[Vec<f64>], x: &[f64], y: &mut [f64]) {
-    matrix.multiply(x, y);
-    for b in border {
-        krylov::add(y, krylov::dot(b, x), b);
-    }
-}
 
 /// Translations and rotations about the middle, as orthogonal unit vectors in the plane and nearly so in space.
 fn rigid_motions<const D: usize>(positions: &[Vector<D>]) -> Vec<Vec<f64>> {

@@ -47,13 +47,14 @@ impl<const D: usize> Triangle<D> {
 
     /// Subtracts row `i` times `x` from `sum`.
     #[inline]
-    fn subtract(&self, i: usize, x: &[f64], sum: &mut [f64; D]) {
+    fn subtract<const W: usize>(&self, i: usize, x: &[f64], sum: &mut [[f64; W]; D]) {
         let range = self.starts[i]..self.starts[i + 1];
         for (&j, block) in self.columns[range.clone()].iter().zip(&self.blocks[range]) {
-            let x = &x[j as usize * D..(j as usize + 1) * D];
+            let x = &x[j as usize * D * W..(j as usize + 1) * D * W];
             for a in 0..D {
                 for b in 0..D {
-                    sum[a] -= f64::from(block[a][b]) * x[b];
+                    let factor = f64::from(block[a][b]);
+                    (0..W).for_each(|l| sum[a][l] -= factor * x[b * W + l]);
                 }
             }
         }
@@ -71,16 +72,17 @@ impl<const D: usize> IncompleteFactor<D> {
         self.parts.iter().map(|p| p.lower.columns.len() + p.upper.columns.len() + p.inverse_diagonal.len()).sum()
     }
 
-    /// `z = M⁻¹ r`.
-    pub fn solve(&self, r: &[f64], z: &mut [f64]) {
+    /// `z = M⁻¹ r` for `W` vectors at once, whose entries stand side by side.
+    pub fn solve<const W: usize>(&self, r: &[f64], z: &mut [f64]) {
         let mut rest = z;
         let mut pieces = vec![];
         for part in &self.parts {
-            let (own, after) = rest.split_at_mut(part.rows.len() * D);
+            let (own, after) = rest.split_at_mut(part.rows.len() * D * W);
             pieces.push((part, own));
             rest = after;
         }
-        pieces.into_par_iter().for_each(|(part, z)| part.solve(&r[part.rows.start * D..part.rows.end * D], z));
+        let of_part = |rows: &Range<usize>| &r[rows.start * D * W..rows.end * D * W];
+        pieces.into_par_iter().for_each(|(part, z)| part.solve::<W>(of_part(&part.rows), z));
     }
 }
 
@@ -152,18 +154,20 @@ impl<const D: usize> PartFactor<D> {
         self.inverse_diagonal.push(inverse(&diagonal));
     }
 
-    fn solve(&self, r: &[f64], z: &mut [f64]) {
+    fn solve<const W: usize>(&self, r: &[f64], z: &mut [f64]) {
         let n = self.inverse_diagonal.len();
         for i in 0..n {
-            let mut sum: [f64; D] = std::array::from_fn(|a| r[i * D + a]);
+            let mut sum: [[f64; W]; D] = std::array::from_fn(|a| std::array::from_fn(|l| r[(i * D + a) * W + l]));
             self.lower.subtract(i, z, &mut sum);
-            z[i * D..(i + 1) * D].copy_from_slice(&sum);
+            z[i * D * W..(i + 1) * D * W].copy_from_slice(sum.as_flattened());
         }
         for i in (0..n).rev() {
-            let mut sum: [f64; D] = std::array::from_fn(|a| z[i * D + a]);
+            let mut sum: [[f64; W]; D] = std::array::from_fn(|a| std::array::from_fn(|l| z[(i * D + a) * W + l]));
             self.upper.subtract(i, z, &mut sum);
             for a in 0..D {
-                z[i * D + a] = (0..D).map(|b| self.inverse_diagonal[i][a][b] * sum[b]).sum();
+                for l in 0..W {
+                    z[(i * D + a) * W + l] = (0..D).map(|b| self.inverse_diagonal[i][a][b] * sum[b][l]).sum();
+                }
             }
         }
     }
@@ -294,7 +298,7 @@ mod tests {
         let x: Vec<f64> = (0..18).map(|i| (i as f64).cos()).collect();
         let (mut right, mut found) = (vec![0.0; 18], vec![0.0; 18]);
         matrix.multiply(&x, &mut right);
-        IncompleteFactor::new(&matrix, std::iter::once(0..6).collect()).solve(&right, &mut found);
+        IncompleteFactor::new(&matrix, std::iter::once(0..6).collect()).solve::<1>(&right, &mut found);
         assert!(found.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?}");
     }
 }

@@ -95,14 +95,14 @@ impl SparseLu {
         Ok(Self { symbolic, numeric, n })
     }
 
-    /// Replaces the right-hand side by the solution.
-    pub fn solve_in_place(&self, x: &mut [f64]) {
-        let mut right = Mat::from_fn(self.n, 1, |i, _| x[i]);
-        let mut memory = MemBuffer::new(self.symbolic.solve_transpose_in_place_scratch::<f64>(1, Par::Seq));
+    /// Replaces `W` right-hand sides, whose entries stand side by side, by the solutions.
+    pub fn solve_in_place<const W: usize>(&self, x: &mut [f64]) {
+        let mut right = Mat::from_fn(self.n, W, |i, l| x[i * W + l]);
+        let mut memory = MemBuffer::new(self.symbolic.solve_transpose_in_place_scratch::<f64>(W, Par::Seq));
         // The symbolic and numeric parts were made together.
         let factor = LuRef::new_unchecked(&self.symbolic, &self.numeric);
         factor.solve_transpose_in_place_with_conj(Conj::No, right.as_mut(), Par::Seq, MemStack::new(&mut memory));
-        x.iter_mut().enumerate().for_each(|(i, v)| *v = right[(i, 0)]);
+        x.iter_mut().enumerate().for_each(|(i, v)| *v = right[(i / W, i % W)]);
     }
 }
 

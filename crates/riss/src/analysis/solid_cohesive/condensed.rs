@@ -73,8 +73,16 @@ impl UnitFields {
         let missing: Vec<_> = (0..body.tied.pairs.len())
             .flat_map(|k| (self.of_openings[k].len()..body.n_columns(k, parting)).map(move |d| (k, d)))
             .collect();
-        let one = |(k, d): &(usize, usize)| Ok(body.solve(0.0, &[(*k, body.tied.pairs[*k].directions[*d])])?.0);
-        let solved = missing.par_iter().map(one).collect::<Result<Vec<_>>>()?;
+        let opening = |m: usize| (missing[m].0, body.tied.pairs[missing[m].0].directions[missing[m].1]);
+        let mut solved = body.solver.solve_all(missing.len(), |m| {
+            let mut right = vec![0.0; self.of_load.len()];
+            body.tied.open(opening(m).0, opening(m).1, &mut right);
+            right
+        })?;
+        for (m, field) in solved.iter_mut().enumerate() {
+            let (own, w) = opening(m);
+            body.tied.complete(field, |pair| if pair == own { w } else { Vector::zeros() });
+        }
         missing.into_iter().zip(solved).for_each(|((k, _), field)| self.of_openings[k].push(field));
         Ok(())
     }

@@ -46,6 +46,7 @@ impl Energy {
                     Self { mutual: DMatrix::zeros(m, m), gradients: vec![Matrix::zeros(); m], body_work: vec![0.0; m] };
                 let mut scratch = Scratch {
                     rows: DMatrix::zeros(m, CHUNK * POINTS * TERMS),
+                    columns: DMatrix::zeros(CHUNK * POINTS * TERMS, m),
                     gradients: DMatrix::zeros(m, 9 * POINTS),
                     around: DMatrix::zeros(m, 0),
                     weights_of: DMatrix::zeros(3 * POINTS, 0),
@@ -57,8 +58,8 @@ impl Energy {
                     for (k, node) in (start..(start + CHUNK).min(nodes.end)).enumerate() {
                         add_rows(collocation, cells, node, fields, k, &mut scratch, &mut sum)?;
                     }
-                    let rows = &scratch.rows;
-                    sum.mutual.gemm(1.0, rows, &rows.transpose(), 1.0);
+                    scratch.rows.transpose_to(&mut scratch.columns);
+                    sum.mutual.gemm(1.0, &scratch.rows, &scratch.columns, 1.0);
                 }
                 Ok(sum)
             })
@@ -80,7 +81,9 @@ impl Energy {
 struct Scratch {
     buffer: FitBuffer<3>,
     shape: ShapeFunctions<3>,
+    /// Terms of the strain energy of each field, and the same transposed.
     rows: DMatrix<f64>,
+    columns: DMatrix<f64>,
     /// Displacement gradients of each field: by component of the displacement, point and direction.
     gradients: DMatrix<f64>,
     /// Displacements of the neighbors, and their derivatives' weights.
@@ -100,7 +103,7 @@ fn add_rows(
     scratch: &mut Scratch,
     sum: &mut Energy,
 ) -> Result<()> {
-    let Scratch { buffer, shape, rows, gradients, around, weights_of, derivatives } = scratch;
+    let Scratch { buffer, shape, rows, gradients, around, weights_of, derivatives, .. } = scratch;
     let cloud = collocation.cloud();
     if cells.volumes[node] == 0.0 {
         return Ok(());

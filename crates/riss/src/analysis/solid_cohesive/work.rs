@@ -32,8 +32,11 @@ pub(super) struct Work {
 
 /// What a point of integration adds.
 struct Share {
-    loads: Vec<(u32, Vector3)>,
-    outside: Vec<(u32, [Matrix<3>; 3])>,
+    /// Shape functions.
+    values: Vec<(u32, f64)>,
+    /// Free directions, and the area with its normal.
+    free: Matrix<3>,
+    area: Vector3,
     force: Vector3,
     prescribed: f64,
 }
@@ -66,18 +69,11 @@ impl Work {
             let conditions = &model.solid.parts[*part as usize];
             let sight = position - normal * (SIGHT * spacing.at(*position));
             let at = SurfacePoint { position: *position, normal: *normal, sight };
-            let mut share = Share { loads: vec![], outside: vec![], force: Vector3::zeros(), prescribed: 0.0 };
             let (free, moved) = split(conditions, &at);
-            let traction = free * conditions.traction.value(&at);
-            share.prescribed = moved.norm();
             collocation.approximation.at_point(*position, sight, fit, shape)?;
-            share.force = traction * *weight;
-            for (k, i) in shape.neighbors.iter().enumerate() {
-                let value = *weight * shape.values[k];
-                share.outside.push((*i, std::array::from_fn(|c| free.column(c) * normal.transpose() * value)));
-                share.loads.push((*i, share.force * shape.values[k]));
-            }
-            Ok(share)
+            let values = shape.neighbors.iter().copied().zip(shape.values.iter().copied()).collect();
+            let force = free * conditions.traction.value(&at) * *weight;
+            Ok(Share { values, free, area: normal * *weight, force, prescribed: moved.norm() })
         };
         let shares = points.par_iter().map_init(Default::default, share).collect::<Result<Vec<_>>>()?;
         let n = collocation.cloud().len();
@@ -89,9 +85,11 @@ impl Work {
         };
         let (mut sum, mut sizes) = (Vector3::zeros(), 0.0);
         for share in shares {
-            share.loads.iter().for_each(|(i, c)| work.loads[*i as usize] += c);
-            for (i, outside) in share.outside {
-                work.outside[i as usize].iter_mut().zip(outside).for_each(|(a, b)| *a += b);
+            for (i, value) in share.values {
+                work.loads[i as usize] += share.force * value;
+                for (c, outside) in work.outside[i as usize].iter_mut().enumerate() {
+                    *outside += share.free.column(c) * share.area.transpose() * value;
+                }
             }
             sum += share.force;
             sizes += share.force.norm();
