@@ -17,6 +17,8 @@ const MOST_LIFT: f64 = 0.4;
 /// plane triangles on which the nodes stand.
 const AROUND: f64 = 0.25;
 const AROUND_POINTS: usize = 8;
+/// Sweeps in which sights get behind all facets of a node.
+const SWEEPS: usize = 6;
 /// Sectors narrower than this are no facets [rad].
 const NARROW: f64 = 1e-6;
 
@@ -188,9 +190,23 @@ fn split_mouth(sites: &Sites<'_>, site: &Site, foot: &Foot, crack: u32, solid: &
         let inside =
             wedges.iter().fold(around.to_vec(), |left, w| left.iter().filter_map(|c| c.above(-w.normal)).collect());
         facets.extend(face_facets(surface, site, &inside, crack, side, lift(surface, &on_crack, site, along)));
+        keep_behind(site, &mut facets);
         push(solid, site, facets);
     }
     solid.pairs.push(FacePair { crack, nodes: [first, first + 1] });
+}
+
+/// Moves the sights of facets behind all of them: what one was lifted over may lie beyond another.
+fn keep_behind(site: &Site, facets: &mut [(Facet<3>, f64)]) {
+    let normals: Vec<Vector3> = facets.iter().map(|f| f.0.normal).collect();
+    for (facet, _) in facets {
+        for _ in 0..SWEEPS {
+            for normal in &normals {
+                let above = (facet.sight - site.position).dot(normal) + 0.5 * SIGHT_SHIFT * site.spacing;
+                facet.sight -= normal * above.max(0.0);
+            }
+        }
+    }
 }
 
 /// Four quarters of a plane.
