@@ -8,7 +8,7 @@ use super::areas::FaceArea;
 use super::energy::Energy;
 use super::free_faces::FreeFaces;
 use super::work::Work;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::integration::NodeCells;
 use crate::math::{Vector, Vector3};
 use crate::system::{Collocation, CollocationSystem, PreparedSolver, SolverEffort, TiedFaces};
@@ -17,6 +17,10 @@ use rayon::prelude::*;
 
 /// No pair stands for less than this share of the area nearest to it.
 const LEAST_AREA: f64 = 0.2;
+
+/// Most that it takes to open a pair, over Young's modulus times the root of its area; usual are 0.1 to 15, and 10⁴ and more
+/// where the equations are nearly singular.
+const MOST_STIFFNESS: f64 = 1e3;
 
 /// Which openings are unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +57,8 @@ pub(super) struct TiedBody<'a> {
     pub solver: PreparedSolver<'a, 3>,
     pub work: Work,
     cells: NodeCells,
+    /// Unit vectors of the motions of the whole body that nothing holds.
+    free_motions: Vec<Vec<f64>>,
 }
 
 /// Displacements under the load and under openings of unit size, as far as they were asked for.
@@ -81,7 +87,7 @@ impl UnitFields {
         })?;
         for (m, field) in solved.iter_mut().enumerate() {
             let (own, w) = opening(m);
-            body.tied.complete(field, |pair| if pair == own { w } else { Vector::zeros() });
+            body.complete(field, |pair| if pair == own { w } else { Vector::zeros() });
         }
         missing.into_iter().zip(solved).for_each(|((k, _), field)| self.of_openings[k].push(field));
         Ok(())
@@ -100,8 +106,9 @@ impl<'a> TiedBody<'a> {
         work: Work,
         cells: NodeCells,
     ) -> Result<Self> {
-        let border = tied.tied_motions(collocation.free_motions(&system.fixed)?);
-        Ok(Self { tied, solver: collocation.prepare(&tied.system, border)?, work, cells })
+        let free_motions = collocation.free_motions(&system.fixed)?;
+        let border = tied.tied_motions(free_motions.clone());
+        Ok(Self { tied, solver: collocation.prepare(&tied.system, border)?, work, cells, free_motions })
     }
 
     /// Displacements of a load factor with openings.
@@ -114,8 +121,18 @@ impl<'a> TiedBody<'a> {
         let (mut displacements, effort) = self.solver.solve(&right)?;
         let mut of_pair = vec![Vector::zeros(); self.tied.pairs.len()];
         openings.iter().for_each(|(pair, w)| of_pair[*pair] += *w);
-        self.tied.complete(&mut displacements, |pair| of_pair[pair]);
+        self.complete(&mut displacements, |pair| of_pair[pair]);
         Ok((displacements, effort))
+    }
+
+    /// Puts the displacements of the first nodes in place, and takes out motions of the whole body: loads that are balanced up
+    /// to errors of integration would do work on them.
+    fn complete(&self, displacements: &mut [f64], openings: impl Fn(usize) -> Vector3) {
+        self.tied.complete(displacements, openings);
+        for motion in self.free_motions.iter().chain(&self.free_motions) {
+            let along: f64 = motion.iter().zip(displacements.iter()).map(|(m, u)| m * u).sum();
+            displacements.iter_mut().zip(motion).for_each(|(u, m)| *u -= along * m);
+        }
     }
 
     fn n_columns(&self, pair: usize, parting: Parting) -> usize {
@@ -160,6 +177,7 @@ impl Condensed {
         let last = fields.len() - 1;
         let all = DMatrix::from_fn(fields.len(), known.of_load.len(), |field, dof| fields[field][dof]);
         let energy = Energy::new(collocation, &body.cells, &all)?;
+        check_stiffness(collocation, &energy, &columns, areas)?;
         let of_field = |k: usize| body.work.of(fields[k]) + free.work(fields[k]) + energy.body_work[k];
         let of_loads: Vec<f64> = (0..=last).into_par_iter().map(of_field).collect();
         let mut tractions: Vec<Vec<f64>> = fields
@@ -234,6 +252,23 @@ impl Condensed {
     pub fn opening_of(&self, pair: usize, columns: &[f64]) -> [f64; 3] {
         components(&columns[self.columns[pair]..self.columns[pair + 1]])
     }
+}
+
+/// Looks for openings that move far more of the body than their surroundings.
+fn check_stiffness(collocation: &Collocation<3>, energy: &Energy, columns: &[usize], areas: &[FaceArea]) -> Result<()> {
+    let stiffness = |(pair, area): (usize, &FaceArea)| {
+        let own = (columns[pair]..columns[pair + 1]).map(|c| energy.mutual[(c, c)]).fold(0.0, f64::max);
+        own / (collocation.solid.material.young * area.total.sqrt())
+    };
+    let largest = areas.iter().enumerate().map(stiffness).fold(0.0, f64::max);
+    if largest <= MOST_STIFFNESS {
+        return Ok(());
+    }
+    let reason =
+        "the body nearly falls apart at its cohesive cracks although they are closed: their nodes are spread badly; \
+                  use another spacing, or nodes that are closer around the cracks"
+            .into();
+    Err(Error::Factorization { reason })
 }
 
 fn components(values: &[f64]) -> [f64; 3] {

@@ -15,7 +15,7 @@ const EDGE: f64 = 1.0;
 /// Depth from which points on the boundary look at nodes, over the spacing there.
 const SIGHT: f64 = 1e-3;
 /// Loads count as balanced if their sum is below this share of their sizes.
-const BALANCED: f64 = 1e-3;
+const BALANCED: f64 = 0.02;
 
 /// Integrals over the boundary.
 pub(super) struct Work {
