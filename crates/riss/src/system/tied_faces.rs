@@ -4,16 +4,16 @@
 //! which the traction between them cancels. The matrix is then the same for every opening, and tractions and displacements
 //! are linear in the load and in the openings.
 //!
-//! The sum is that of the forces on the layer of half a spacing on both faces,
-//! `t_a + t_b - (h_a div σ_a + h_b div σ_b)/2`: near the edge of a surface both nodes see the same neighbors, and the
-//! tractions alone would say nothing.
+//! Near the edge of a surface both nodes see the same neighbors, and the sum of their tractions alone would say nothing. There
+//! the forces on the layer of half a spacing on both faces are added, `-(h_a div σ_a + h_b div σ_b)/2`, by the share of neighbors
+//! that both see. Elsewhere they are left out: with them the equations of some clouds are nearly singular.
 
 use super::block_rows::{Block, BlockRows, CHUNK, RowChunk};
 use super::collocation::{Collocation, CollocationSystem};
 use crate::error::Result;
 use crate::math::{Matrix, Vector};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A pair is tied along directions that its supports leave free by more than this sine.
 const FREE: f64 = 0.1;
@@ -74,6 +74,21 @@ pub(super) struct Row<const D: usize> {
     pub load: Vector<D>,
 }
 
+impl<const D: usize> Row<D> {
+    fn times(mut self, factor: f64) -> Self {
+        self.blocks.iter_mut().flatten().flatten().for_each(|v| *v *= factor);
+        self.load *= factor;
+        self
+    }
+}
+
+/// Share of the columns of two rows that both have, of the shorter one.
+fn common_share([a, b]: [&[u32]; 2]) -> f64 {
+    let own: FxHashSet<u32> = a.iter().copied().collect();
+    let common = b.iter().filter(|j| own.contains(j)).count();
+    common as f64 / a.len().min(b.len()).max(1) as f64
+}
+
 impl<const D: usize> TiedFaces<D> {
     /// Ties pairs of nodes.
     ///
@@ -83,7 +98,8 @@ impl<const D: usize> TiedFaces<D> {
         let layers: Vec<[Row<D>; 2]> = pairs
             .par_iter()
             .map(|p| {
-                let [first, second] = p.nodes.map(|i| collocation.layer(i as u32));
+                let share = common_share(p.nodes.map(|i| system.tangent.row(i).0));
+                let [first, second] = p.nodes.map(|i| Ok(collocation.layer(i as u32)?.times(share)));
                 Ok([first?, second?])
             })
             .collect::<Result<_>>()?;
