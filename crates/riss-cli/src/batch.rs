@@ -200,7 +200,7 @@ fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {
     results::describe_solid(case, folder).map_err(|e| results::reason(&e))?;
     let mut progress = Progress::new(true);
     if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
-        let followed = solid_loading::follow(case, cohesive, loading, folder, progress)?;
+        let followed = solid_loading::follow(case, cohesive, loading, None, folder, progress)?;
         return followed.map(|f| f.results).ok_or_else(|| "stopped before the end".into());
     }
     if let Some(growth) = &case.growth {

@@ -100,8 +100,10 @@ fn run_one(arguments: &RunArguments) -> u8 {
     let path = arguments.cases.first().cloned().or_else(|| known.as_ref().map(|k| k.case.clone())).unwrap_or_default();
     let case = match AnyCase::read(&path, &overrides) {
         Ok(AnyCase::Plane(case)) => *case,
-        Ok(AnyCase::Solid(case)) if arguments.resume.is_some() && case.model.cohesive.is_some() => {
-            return refuse("runs with cohesive cracks cannot be resumed: they are loaded from rest");
+        Ok(AnyCase::Solid(case)) if arguments.from_step.is_some() && case.model.cohesive.is_some() => {
+            return refuse(
+                "runs with cohesive cracks go on with the last surfaces, not from a step: leave out --from-step",
+            );
         }
         Ok(AnyCase::Solid(case)) if arguments.resume.is_some() && case.growth.is_none() => {
             return refuse("the case has no [growth]: there is nothing to go on with");

@@ -35,7 +35,7 @@ fn solve(case: &SolidCase, watch: &mut Watch) -> Result<SolidResults, String> {
         return Ok(results);
     }
     if let (Some(cohesive), Some(loading)) = (&model.cohesive, &case.loading) {
-        let record = solid_loading(model, cohesive, settings, loading, case.growth.as_ref(), watch)
+        let record = solid_loading(model, cohesive, settings, loading, case.growth.as_ref(), None, watch)
             .map_err(|e| e.to_string())?;
         let (record, result) = record.zip(watch.at_peak.take()).ok_or("the load curve has no peak")?;
         let info = watch.info(case, record.end.kind != GrowthEndKind::Failed);

@@ -61,11 +61,31 @@ pub fn grow(
 pub fn begin(case: &SolidCase, dir: &Path) -> Result<(SolidWriter, Option<SolidGrowthState>), String> {
     let failed = |e: io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(&e));
     let writer = SolidWriter::new(dir).map_err(failed)?;
+    keep_case(case, dir).map_err(failed)?;
+    Ok((writer, None))
+}
+
+/// Keeps the case in the folder of its results, as [`unchanged`] asks for.
+pub fn keep_case(case: &SolidCase, dir: &Path) -> io::Result<()> {
     let path = case.path.canonicalize().unwrap_or_else(|_| case.path.clone());
     let copy = Resumed { case: path, text: case.text.clone(), overrides: case.overrides.clone() };
-    let text = serde_json::to_vec_pretty(&copy).map_err(|e| e.to_string())?;
-    write_file(dir, CASE_COPY, &text).map_err(failed)?;
-    Ok((writer, None))
+    write_file(dir, CASE_COPY, &serde_json::to_vec_pretty(&copy)?)
+}
+
+/// Refuses to go on in a folder if more than `[growth]` of the case has changed.
+///
+/// # Errors
+/// What has changed, or that the folder has no case.
+pub fn unchanged(case: &SolidCase, dir: &Path) -> Result<(), String> {
+    let known = Resumed::read(dir)?;
+    let before = SolidCase::parse(&known.text, &known.case, &known.overrides)
+        .map_err(|_| format!("{CASE_COPY} in {} cannot be read any more", dir.display()))?;
+    let Some(key) = before.differs_outside_growth(case) else { return Ok(()) };
+    Err(format!(
+        "{} differs from the case of {} in `{key}`; only [growth] may change in between",
+        case.path.display(),
+        dir.display()
+    ))
 }
 
 /// Goes on in a folder; nothing but `[growth]` of the case may have changed.
@@ -74,16 +94,7 @@ fn resumed(
     dir: &Path,
     from_step: Option<usize>,
 ) -> Result<(SolidWriter, Option<SolidGrowthState>), String> {
-    let known = Resumed::read(dir)?;
-    let before = SolidCase::parse(&known.text, &known.case, &known.overrides)
-        .map_err(|_| format!("{CASE_COPY} in {} cannot be read any more", dir.display()))?;
-    if let Some(key) = before.differs_outside_growth(case) {
-        return Err(format!(
-            "{} differs from the case of {} in `{key}`; only [growth] may change in between",
-            case.path.display(),
-            dir.display()
-        ));
-    }
+    unchanged(case, dir)?;
     let last = riss::output::solid_files::read_solid_results(dir).and_then(|r| r.steps.last().map(|s| s.step));
     let Some(last) = last else { return begin(case, dir) };
     let step = from_step.unwrap_or(last);

@@ -3,13 +3,14 @@
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::run::RunArguments;
 use crate::table::{number, units_line};
-use crate::{DONE, STOPPED, desktop, interrupt, results};
+use crate::{BAD_CASE, DONE, STOPPED, desktop, interrupt, results, solid_grow};
 use riss::analysis::{
-    GrowthEndKind, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, Observer, Stage, Warning, solid_loading,
+    CohesiveSurfaces, GrowthEndKind, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, Observer, Stage, Warning,
+    solid_loading,
 };
 use riss::case::SolidCase;
 use riss::model::CohesiveModel;
-use riss::output::{LoadingWriter, REPORT_FILE, RunInfo, RunStatus, SolidResults};
+use riss::output::{LoadingWriter, REPORT_FILE, RunInfo, RunStatus, SolidResults, grown_surfaces};
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -24,8 +25,25 @@ pub fn load(
     dir: &Path,
     progress: Progress,
 ) -> u8 {
-    let followed = match follow(case, cohesive, loading, dir, progress) {
+    let from = match arguments.resume {
+        Some(_) => resumed(case, dir),
+        None => Ok(None),
+    };
+    let from = match from {
+        Ok(from) => from,
+        Err(message) => {
+            crate::fail(&message);
+            return BAD_CASE;
+        }
+    };
+    let followed = match follow(case, cohesive, loading, from, dir, progress) {
         Ok(Some(followed)) => followed,
+        Ok(None) if case.growth.is_some() => {
+            return crate::fail(&format!(
+                "stopped; load_curve.csv has what was found until then, and riss run --resume {} goes on with the surfaces as they have grown",
+                dir.display()
+            ));
+        }
         Ok(None) => return crate::fail("stopped; load_curve.csv has what was found until then"),
         Err(message) => return crate::fail(&message),
     };
@@ -47,6 +65,12 @@ pub fn load(
     if followed.record.end.kind == GrowthEndKind::Failed { STOPPED } else { DONE }
 }
 
+/// The surfaces that a run in this folder had grown; nothing but `[growth]` of the case may have changed.
+fn resumed(case: &SolidCase, dir: &Path) -> Result<Option<CohesiveSurfaces>, String> {
+    solid_grow::unchanged(case, dir)?;
+    grown_surfaces(dir).map_err(|e| format!("the surfaces in {} cannot be gone on from: {e}", dir.display()))
+}
+
 /// A load curve that was written.
 pub struct Followed {
     record: LoadingRecord,
@@ -57,19 +81,28 @@ pub struct Followed {
 
 /// Loads a solid and writes what it does; none if Ctrl-C came before the end.
 ///
+/// - `from`: surfaces that an earlier run had grown, to go on with
+///
 /// # Errors
 /// Why there are no results.
 pub fn follow(
     case: &SolidCase,
     cohesive: &CohesiveModel,
     loading: &LoadingSettings,
+    from: Option<CohesiveSurfaces>,
     dir: &Path,
     progress: Progress,
 ) -> Result<Option<Followed>, String> {
     let unwritten = |e: &io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(e));
     let writer = LoadingWriter::new(dir).map_err(|e| unwritten(&e))?;
+    if case.growth.is_some() {
+        solid_grow::keep_case(case, dir).map_err(|e| unwritten(&e))?;
+    }
+    if let Some(from) = &from {
+        writer.write_surfaces(from).map_err(|e| unwritten(&e))?;
+    }
     let mut watch = Watch { writer, progress, error: None, written: None };
-    let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), &mut watch);
+    let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), from, &mut watch);
     let wall_time_s = watch.progress.finish();
     if let Some(e) = &watch.error {
         return Err(unwritten(e));
@@ -141,6 +174,17 @@ impl Observer for Watch {
             }
         }
         if interrupt::is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn surfaces_grown(&mut self, surfaces: &CohesiveSurfaces) -> ControlFlow<()> {
+        match self.writer.write_surfaces(surfaces) {
+            Ok(()) if interrupt::is_asked() => ControlFlow::Break(()),
+            Ok(()) => ControlFlow::Continue(()),
+            Err(e) => {
+                self.error = Some(e);
+                ControlFlow::Break(())
+            }
+        }
     }
 
     fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {

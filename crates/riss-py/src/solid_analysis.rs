@@ -92,7 +92,7 @@ fn solve(
     if let (Some(cohesive), Some(loading)) = (&case.model.cohesive, &case.loading) {
         listener.loading = out.as_deref().map(LoadingWriter::new).transpose().map_err(files)?;
         let outcome =
-            solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), &mut listener);
+            solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), None, &mut listener);
         if let Some(e) = listener.problem.take() {
             return Err(files(e));
         }

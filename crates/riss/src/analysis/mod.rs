@@ -35,7 +35,9 @@ pub use record::*;
 pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;
 pub use solid_boundary::BoundaryFields;
-pub use solid_cohesive::{GrownSurface, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, solid_loading};
+pub use solid_cohesive::{
+    CohesiveSurfaces, GrownSurface, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, solid_loading,
+};
 pub use solid_convergence::{SolidConvergenceStudy, converge_solid};
 pub use solid_growth::{FrontCriterion, SolidGrowthSettings, SolidGrowthState, SolidStep, solid_growth};
 pub use solid_record::{FrontPointRecord, FrontRecord, OpenedCrack, SolidResult, principal_stresses};

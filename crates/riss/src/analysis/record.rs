@@ -1,7 +1,7 @@
 //! What an analysis reports.
 
 use super::crack_growth::GrowthState;
-use super::solid_cohesive::{LoadPoint, LoadingStep};
+use super::solid_cohesive::{CohesiveSurfaces, LoadPoint, LoadingStep};
 use super::solid_growth::{SolidGrowthState, SolidStep};
 use super::warnings::Warning;
 use crate::crack::{End, EndKind, TipFrame};
@@ -60,6 +60,10 @@ pub trait Observer {
     /// The path of a loaded solid with cohesive cracks has come to one more point, the last of `curve`; it begins anew after a
     /// front grew. A break ends the analysis there.
     fn load_curve(&mut self, _curve: &[LoadPoint]) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+    /// Cohesive surfaces have grown, and are loaded from rest next. A break ends the analysis there.
+    fn surfaces_grown(&mut self, _surfaces: &CohesiveSurfaces) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
     /// A state of a loaded solid with cohesive cracks is complete with its fields. A break ends the analysis there.

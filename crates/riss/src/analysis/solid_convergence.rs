@@ -93,7 +93,7 @@ pub fn converge_solid(
         let n_nodes = match (&model.cohesive, loading) {
             (Some(cohesive), Some(loading)) => {
                 let mut counted = Counted { observer: &mut *observer, n_nodes: 0 };
-                let record = solid_loading(model, cohesive, &settings, loading, None, &mut counted)?;
+                let record = solid_loading(model, cohesive, &settings, loading, None, None, &mut counted)?;
                 let n_nodes = counted.n_nodes;
                 let record = record.ok_or_else(|| unfinished("it was stopped"))?;
                 if record.end.kind == GrowthEndKind::Failed {

@@ -2,13 +2,14 @@
 
 use super::report::REPORT_FILE;
 use super::report::solid_scene::{Scenes, clear_scenes, scene_files, write_scene};
+use super::run_writer::RESTART_FOLDER;
 use super::solid_files::{boundary, cracks_with, nodes};
 use super::solid_report::solid_report;
 use super::solid_results::{LoadCurvePoint, SolidResults};
 use super::vtk::collection;
 use super::whole_file::{write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
-use crate::analysis::{LoadPoint, LoadingRecord, LoadingStep, SolidResult};
+use crate::analysis::{CohesiveSurfaces, LoadPoint, LoadingRecord, LoadingStep, SolidResult};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,8 @@ use std::path::{Path, PathBuf};
 const KINDS: [&str; 3] = ["nodes", "boundary", "cracks"];
 /// Name of the load curve as a table.
 pub const LOAD_CURVE_FILE: &str = "load_curve.csv";
+/// Where the surfaces stand from which a run can go on.
+const SURFACES_FILE: &str = "restart/surfaces.json";
 
 /// The folder of a run with cohesive cracks.
 #[derive(Debug)]
@@ -24,6 +27,18 @@ pub struct LoadingWriter {
     dir: PathBuf,
     steps: Vec<usize>,
     at_peak: Option<SolidResult>,
+}
+
+/// The surfaces that an earlier run in a folder had grown; none if it had not come so far.
+///
+/// # Errors
+/// What the system says; `InvalidData` if the file is none of ours.
+pub fn grown_surfaces(dir: &Path) -> io::Result<Option<CohesiveSurfaces>> {
+    match fs::read(dir.join(SURFACES_FILE)) {
+        Ok(text) => Ok(Some(serde_json::from_slice(&text)?)),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(e),
+    }
 }
 
 impl LoadingWriter {
@@ -37,8 +52,21 @@ impl LoadingWriter {
             Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
             _ => {}
         }
+        match fs::remove_file(dir.join(SURFACES_FILE)) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
+            _ => {}
+        }
         clear_scenes(dir, 0)?;
         Ok(Self { dir: dir.into(), steps: vec![], at_peak: None })
+    }
+
+    /// Writes the surfaces that have grown, from which another run can go on.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_surfaces(&self, surfaces: &CohesiveSurfaces) -> io::Result<()> {
+        fs::create_dir_all(self.dir.join(RESTART_FOLDER))?;
+        write_whole(&self.dir.join(SURFACES_FILE), &serde_json::to_vec(surfaces)?)
     }
 
     /// Writes the load curve as far as it is known, so that a run that is killed leaves it.

@@ -37,7 +37,7 @@ pub mod whole_file;
 pub use comparison::Comparison;
 pub use convergence::write_convergence;
 pub use field_picture::{FieldQuantity, write_field_picture};
-pub use loading_writer::{LOAD_CURVE_FILE, LoadingWriter};
+pub use loading_writer::{LOAD_CURVE_FILE, LoadingWriter, grown_surfaces};
 pub use model_picture::write_model_picture;
 pub use report::{REPORT_FILE, RunSource, describe_run, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};

@@ -1,29 +1,50 @@
 //! Cohesive cracks against closed forms.
 
-use riss::analysis::{GrowthEndKind, LoadingRecord, LoadingStep, Observer, solid_loading};
+use riss::analysis::{CohesiveSurfaces, GrowthEndKind, LoadingRecord, LoadingStep, Observer, solid_loading};
 use riss::case::AnyCase;
 use riss::material::{CohesiveLaw, Softening};
 use std::ops::ControlFlow;
 
 #[derive(Default)]
-struct Kept(Vec<LoadingStep>);
+struct Kept {
+    steps: Vec<LoadingStep>,
+    /// What a killed run would have left.
+    surfaces: Vec<CohesiveSurfaces>,
+}
 
 impl Observer for Kept {
     fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {
-        self.0.push(step.clone());
+        self.steps.push(step.clone());
+        ControlFlow::Continue(())
+    }
+
+    fn surfaces_grown(&mut self, surfaces: &CohesiveSurfaces) -> ControlFlow<()> {
+        self.surfaces.push(surfaces.clone());
         ControlFlow::Continue(())
     }
 }
 
 fn load(text: &str) -> (LoadingRecord, Vec<LoadingStep>) {
+    let (record, kept) = load_from(text, None);
+    (record, kept.steps)
+}
+
+fn load_from(text: &str, from: Option<CohesiveSurfaces>) -> (LoadingRecord, Kept) {
     let case = AnyCase::parse(text, "case.toml".as_ref(), &[]).map_err(|e| e.to_string()).unwrap();
     let AnyCase::Solid(case) = case else { panic!("a solid") };
     let mut kept = Kept::default();
     let cohesive = case.model.cohesive.as_ref().unwrap();
-    let record =
-        solid_loading(&case.model, cohesive, &case.settings, &case.loading.unwrap(), case.growth.as_ref(), &mut kept)
-            .unwrap();
-    (record.unwrap(), kept.0)
+    let record = solid_loading(
+        &case.model,
+        cohesive,
+        &case.settings,
+        &case.loading.unwrap(),
+        case.growth.as_ref(),
+        from,
+        &mut kept,
+    )
+    .unwrap();
+    (record.unwrap(), kept)
 }
 
 /// A bar that is pulled apart across one plane: everywhere the same opening.
@@ -97,7 +118,8 @@ fn an_inclined_plane_opens_and_slides() {
     assert_eq!(record.end.kind, GrowthEndKind::LimitReached, "{:?}", record.end);
     let whole = area / cos * (1.0 - 1e-6);
     assert!(record.curve.iter().filter(|p| p.crack_area > whole).count() > 50);
-    for point in record.curve.iter().filter(|p| p.crack_area > whole) {
+    // In the first of them the last pair is about to open.
+    for point in record.curve.iter().filter(|p| p.crack_area > whole).skip(1) {
         let stress = point.load / area;
         let effective = (point.displacement - length * stress / young) * cos / q;
         let expected = law.softening(effective.max(0.0))[0] / q;
@@ -129,6 +151,25 @@ fn a_strip_grows_through_a_bar() {
         assert!((stress - expected).abs() < 1e-4 * strength, "{stress} {expected}");
     }
     assert!(steps.iter().all(|s| s.model.cracks[0].fronts.is_empty()));
+}
+
+/// A run that goes on from the surfaces that another left comes to the same path, bit by bit.
+#[test]
+fn growth_goes_on_from_the_surfaces_of_another_run() {
+    let text = "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = { young = 30000, poisson = 0.2, \
+         cohesive = { strength = 3, fracture_energy = 0.1 } }\n\
+         geometry.box = { lower = [0, 0, 0], upper = [10, 10, 40] }\nnodes.spacing = 3\n\
+         support = [{ on = 'z-min', z = 0 }, { on = 'z-max', z = 0.01 }]\n\
+         crack = [{ cohesive = true, polygon = [[0, 0, 18], [3, 0, 18], [3, 10, 18], [0, 10, 18]] }]\n\
+         growth = { steps = 40, increment = 3, criterion.largest-principal-stress = { tensile_strength = 3 } }";
+    let (whole, kept) = load_from(text, None);
+    assert!(whole.surfaces.len() > 1 && kept.surfaces.len() + 1 == whole.surfaces.len());
+    for surfaces in kept.surfaces {
+        let stored = serde_json::to_string(&surfaces).unwrap();
+        let (rest, _) = load_from(text, Some(serde_json::from_str(&stored).unwrap()));
+        assert_eq!(rest.curve, whole.curve);
+        assert_eq!(rest.surfaces, whole.surfaces);
+    }
 }
 
 /// With no steps left a path ends where the front would have to grow.

@@ -38,6 +38,16 @@ pub struct GrownSurface {
     pub strips: usize,
 }
 
+/// Where cohesive surfaces stand before they are loaded from rest. The same state goes on in the same way, bit by bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CohesiveSurfaces {
+    /// The surfaces.
+    state: SolidGrowthState,
+    /// What they have been from first to last.
+    history: Vec<GrownSurface>,
+}
+
 /// Surfaces with their problem.
 pub(super) struct Growing<'a> {
     first: &'a SolidModel,
@@ -50,15 +60,30 @@ pub(super) struct Growing<'a> {
 }
 
 impl<'a> Growing<'a> {
-    /// The surfaces of the case.
+    /// The surfaces of the case, or those that they had grown to.
     ///
     /// # Errors
     /// [`CrackDefect`] if a crack lies outside the body.
-    pub fn new(first: &'a SolidModel, growth: &'a SolidGrowthSettings) -> std::result::Result<Self, CrackDefect> {
-        let state = SolidGrowthState::first(first)?;
-        let surfaces = vec![GrownSurface { areas: state.areas(), load_factor: None, strips: 0 }];
+    pub fn new(
+        first: &'a SolidModel,
+        growth: &'a SolidGrowthSettings,
+        from: Option<CohesiveSurfaces>,
+    ) -> std::result::Result<Self, CrackDefect> {
+        let (state, surfaces) = match from {
+            Some(from) => (from.state, from.history),
+            None => {
+                let state = SolidGrowthState::first(first)?;
+                let surfaces = vec![GrownSurface { areas: state.areas(), load_factor: None, strips: 0 }];
+                (state, surfaces)
+            }
+        };
         let model = state.model(first)?;
         Ok(Self { first, growth, state, model, surfaces, halt: None })
+    }
+
+    /// What it takes to go on from here.
+    pub fn now(&self) -> CohesiveSurfaces {
+        CohesiveSurfaces { state: self.state.clone(), history: self.surfaces.clone() }
     }
 
     /// Settings with nodes as close along cohesive surfaces as at their fronts.

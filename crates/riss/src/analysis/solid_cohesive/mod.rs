@@ -28,7 +28,7 @@ use areas::{FaceArea, face_areas};
 use condensed::{Condensed, Parting, TiedBody, UnitFields};
 use free_faces::FreeFaces;
 use growing::Growing;
-pub use growing::GrownSurface;
+pub use growing::{CohesiveSurfaces, GrownSurface};
 use load_curve::{Followed, follow};
 pub use path::CohesiveState;
 use serde::{Deserialize, Serialize};
@@ -105,6 +105,7 @@ struct Bond {
 /// Loads a solid with cohesive cracks; none if the observer ended it. Steps with fields reach the observer in order.
 ///
 /// - `growth`: how the surfaces grow, if they do
+/// - `from`: the surfaces that an earlier run had grown to, if it goes on from there
 ///
 /// # Errors
 /// Those of nodes, shape functions and solver.
@@ -114,13 +115,14 @@ pub fn solid_loading(
     settings: &SolidSettings,
     loading: &LoadingSettings,
     growth: Option<&SolidGrowthSettings>,
+    from: Option<CohesiveSurfaces>,
     observer: &mut dyn Observer,
 ) -> Result<Option<LoadingRecord>> {
     let Some(growth) = growth else {
         let Traced::Done(record) = traced(model, cohesive, settings, loading, None, observer)? else { return Ok(None) };
         return Ok(record.map(|r| *r));
     };
-    let mut growing = match Growing::new(model, growth) {
+    let mut growing = match Growing::new(model, growth, from) {
         Ok(growing) => growing,
         Err(defect) => return Ok(Some(growing::no_record(model, &defect))),
     };
@@ -129,6 +131,9 @@ pub fn solid_loading(
         match traced(&growing.model, cohesive, &settings, loading, Some(&growing), observer)? {
             Traced::Reached { solved, place, load_factor } => {
                 growing.extend(&solved, &cohesive.law, place, load_factor)?;
+                if growing.halt.is_none() && observer.surfaces_grown(&growing.now()).is_break() {
+                    return Ok(None);
+                }
             }
             Traced::Done(record) => {
                 let Some(mut record) = record else { return Ok(None) };
