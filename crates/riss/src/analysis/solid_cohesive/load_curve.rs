@@ -8,6 +8,9 @@ use crate::analysis::record::{GrowthEnd, GrowthEndKind, Observer};
 use crate::material::CohesiveLaw;
 use crate::math::Vector3;
 
+/// Pairs that are open by less than this, over `G_f/f_t`, call for no growth: the first to open may do so by noise.
+const OPENED: f64 = 0.01;
+
 /// A path with its states.
 pub(super) struct Followed {
     pub curve: Vec<LoadPoint>,
@@ -65,7 +68,8 @@ pub(super) fn follow(
             followed.most_shear = followed.most_shear.max(if is_stuck { s.hypot(t) } else { 0.0 });
         }
         greatest = greatest.max(point.load.abs());
-        followed.reached = (0..bonds.len()).filter(|k| path.state.is_open[*k]).find_map(|k| bonds[k].near_front);
+        let opens = |k: &usize| path.state.is_open[*k] && path.state.history[*k] >= OPENED * law.opening_scale();
+        followed.reached = (0..bonds.len()).filter(opens).find_map(|k| bonds[k].near_front);
         if followed.reached.is_some() {
             break;
         }
