@@ -83,10 +83,10 @@ impl<const D: usize> Row<D> {
 }
 
 /// Share of the columns of two rows that both have, of the shorter one.
-fn common_share([a, b]: [&[u32]; 2]) -> f64 {
+fn shared_fraction([a, b]: [&[u32]; 2]) -> f64 {
     let own: FxHashSet<u32> = a.iter().copied().collect();
-    let common = b.iter().filter(|j| own.contains(j)).count();
-    common as f64 / a.len().min(b.len()).max(1) as f64
+    let shared = b.iter().filter(|j| own.contains(j)).count();
+    shared as f64 / a.len().min(b.len()).max(1) as f64
 }
 
 impl<const D: usize> TiedFaces<D> {
@@ -98,7 +98,7 @@ impl<const D: usize> TiedFaces<D> {
         let layers: Vec<[Row<D>; 2]> = pairs
             .par_iter()
             .map(|p| {
-                let share = common_share(p.nodes.map(|i| system.tangent.row(i).0));
+                let share = shared_fraction(p.nodes.map(|i| system.tangent.row(i).0));
                 let [first, second] = p.nodes.map(|i| Ok(collocation.layer(i as u32)?.times(share)));
                 Ok([first?, second?])
             })
