@@ -5,6 +5,7 @@ use crate::results;
 use riss::case::Case;
 use riss::output::{RESULTS_FILE, RunWriter, read_results, restart_state, write_file};
 use serde::{Deserialize, Serialize};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The case as the run began with it, in the folder of results.
@@ -48,15 +49,22 @@ pub fn begin(case: &Case, dir: &Path) -> Result<Beginning, Obstacle> {
         _ => {}
     }
     let writer = RunWriter::new(dir, results::options(case)).map_err(failed)?;
-    let path = case.path.canonicalize().unwrap_or_else(|_| case.path.clone());
-    let copy = Resumed { case: path, text: case.text.clone(), overrides: case.overrides.clone() };
-    let text = serde_json::to_vec_pretty(&copy).map_err(|e| Obstacle::Request(e.to_string()))?;
-    write_file(dir, CASE_COPY, &text).map_err(failed)?;
+    Resumed::keep(&case.path, &case.text, &case.overrides, dir).map_err(failed)?;
     writer.describe(&results::source(case)).map_err(failed)?;
     Ok(Beginning { writer, state: None })
 }
 
 impl Resumed {
+    /// Keeps a case in the folder of its results.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn keep(case: &Path, text: &str, overrides: &[String], dir: &Path) -> io::Result<()> {
+        let case = case.canonicalize().unwrap_or_else(|_| case.into());
+        let copy = Self { case, text: text.into(), overrides: overrides.into() };
+        write_file(dir, CASE_COPY, &serde_json::to_vec_pretty(&copy)?)
+    }
+
     /// What stands in a folder of results.
     pub fn read(dir: &Path) -> Result<Self, String> {
         let path = dir.join(CASE_COPY);

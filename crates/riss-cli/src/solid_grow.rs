@@ -10,7 +10,7 @@ use riss::analysis::{
     GrowthEnd, GrowthEndKind, Observer, SolidGrowthSettings, SolidGrowthState, SolidStep, Stage, Warning, solid_growth,
 };
 use riss::case::SolidCase;
-use riss::output::{REPORT_FILE, RESULTS_FILE, RunInfo, RunStatus, SolidWriter, solid_restart_state, write_file};
+use riss::output::{REPORT_FILE, RESULTS_FILE, RunInfo, RunStatus, SolidWriter, solid_restart_state};
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -61,15 +61,8 @@ pub fn grow(
 pub fn begin(case: &SolidCase, dir: &Path) -> Result<(SolidWriter, Option<SolidGrowthState>), String> {
     let failed = |e: io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(&e));
     let writer = SolidWriter::new(dir).map_err(failed)?;
-    keep_case(case, dir).map_err(failed)?;
+    Resumed::keep(&case.path, &case.text, &case.overrides, dir).map_err(failed)?;
     Ok((writer, None))
-}
-
-/// Keeps the case in the folder of its results, as [`unchanged`] asks for.
-pub fn keep_case(case: &SolidCase, dir: &Path) -> io::Result<()> {
-    let path = case.path.canonicalize().unwrap_or_else(|_| case.path.clone());
-    let copy = Resumed { case: path, text: case.text.clone(), overrides: case.overrides.clone() };
-    write_file(dir, CASE_COPY, &serde_json::to_vec_pretty(&copy)?)
 }
 
 /// Refuses to go on in a folder if more than `[growth]` of the case has changed.

@@ -1,6 +1,7 @@
 //! `riss run` of a solid with cohesive cracks.
 
 use crate::progress::{Progress, peak_memory_bytes};
+use crate::resume::Resumed;
 use crate::run::RunArguments;
 use crate::table::{number, units_line};
 use crate::{BAD_CASE, DONE, STOPPED, desktop, interrupt, results, solid_grow};
@@ -96,7 +97,7 @@ pub fn follow(
     let unwritten = |e: &io::Error| format!("cannot write the results to {}: {}", dir.display(), results::reason(e));
     let writer = LoadingWriter::new(dir).map_err(|e| unwritten(&e))?;
     if case.growth.is_some() {
-        solid_grow::keep_case(case, dir).map_err(|e| unwritten(&e))?;
+        Resumed::keep(&case.path, &case.text, &case.overrides, dir).map_err(|e| unwritten(&e))?;
     }
     if let Some(from) = &from {
         writer.write_surfaces(from).map_err(|e| unwritten(&e))?;
@@ -156,6 +157,14 @@ struct Watch {
 /// The load curve is written as often as this while it is followed.
 const BETWEEN_CURVES: Duration = Duration::from_secs(1);
 
+impl Watch {
+    /// Keeps why nothing could be written; goes on unless that is so or Ctrl-C came.
+    fn after(&mut self, written: io::Result<()>) -> ControlFlow<()> {
+        self.error = written.err();
+        if self.error.is_some() || interrupt::is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
 impl Observer for Watch {
     fn stage(&mut self, stage: Stage) {
         self.progress.stage(stage);
@@ -166,35 +175,21 @@ impl Observer for Watch {
     }
 
     fn load_curve(&mut self, curve: &[LoadPoint]) -> ControlFlow<()> {
-        if self.written.is_none_or(|time| time.elapsed() >= BETWEEN_CURVES) {
+        let is_due = self.written.is_none_or(|time| time.elapsed() >= BETWEEN_CURVES);
+        let written = if is_due { self.writer.write_curve(curve) } else { Ok(()) };
+        if is_due {
             self.written = Some(Instant::now());
-            if let Err(e) = self.writer.write_curve(curve) {
-                self.error = Some(e);
-                return ControlFlow::Break(());
-            }
         }
-        if interrupt::is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.after(written)
     }
 
     fn surfaces_grown(&mut self, surfaces: &CohesiveSurfaces) -> ControlFlow<()> {
-        match self.writer.write_surfaces(surfaces) {
-            Ok(()) if interrupt::is_asked() => ControlFlow::Break(()),
-            Ok(()) => ControlFlow::Continue(()),
-            Err(e) => {
-                self.error = Some(e);
-                ControlFlow::Break(())
-            }
-        }
+        let written = self.writer.write_surfaces(surfaces);
+        self.after(written)
     }
 
     fn loading_step(&mut self, step: &LoadingStep) -> ControlFlow<()> {
-        match self.writer.write_step(step) {
-            Ok(()) if interrupt::is_asked() => ControlFlow::Break(()),
-            Ok(()) => ControlFlow::Continue(()),
-            Err(e) => {
-                self.error = Some(e);
-                ControlFlow::Break(())
-            }
-        }
+        let written = self.writer.write_step(step);
+        self.after(written)
     }
 }

@@ -7,7 +7,7 @@ use super::solid_files::{boundary, cracks_with, nodes};
 use super::solid_report::solid_report;
 use super::solid_results::{LoadCurvePoint, SolidResults};
 use super::vtk::collection;
-use super::whole_file::{write_all, write_whole};
+use super::whole_file::{remove_if_there, write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::{CohesiveSurfaces, LoadPoint, LoadingRecord, LoadingStep, SolidResult};
 use std::fs;
@@ -48,14 +48,8 @@ impl LoadingWriter {
     /// What the system says.
     pub fn new(dir: &Path) -> io::Result<Self> {
         fs::create_dir_all(dir)?;
-        match fs::remove_file(dir.join(RESULTS_FILE)) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
-            _ => {}
-        }
-        match fs::remove_file(dir.join(SURFACES_FILE)) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
-            _ => {}
-        }
+        remove_if_there(&dir.join(RESULTS_FILE))?;
+        remove_if_there(&dir.join(SURFACES_FILE))?;
         clear_scenes(dir, 0)?;
         Ok(Self { dir: dir.into(), steps: vec![], at_peak: None })
     }

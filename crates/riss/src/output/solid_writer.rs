@@ -7,7 +7,7 @@ use super::solid_files::{boundary, cracks, nodes, read_solid_results};
 use super::solid_report::solid_report;
 use super::solid_results::{SolidResults, SolidStepResults};
 use super::vtk::{Array, CellType, Cells, collection, spatial_grid};
-use super::whole_file::write_all;
+use super::whole_file::{remove_if_there, write_all};
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::{SolidGrowthState, SolidStep};
 use crate::crack::GrowingCrack;
@@ -32,7 +32,7 @@ impl SolidWriter {
     /// What the system says.
     pub fn new(dir: &Path) -> io::Result<Self> {
         fs::create_dir_all(dir.join(RESTART_FOLDER))?;
-        remove(&dir.join(RESULTS_FILE))?;
+        remove_if_there(&dir.join(RESULTS_FILE))?;
         remove_from(dir, 0)?;
         clear_scenes(dir, 0)?;
         Ok(Self { dir: dir.into(), steps: vec![] })
@@ -119,13 +119,6 @@ fn surfaces(all: &[GrowingCrack]) -> Vec<u8> {
     spatial_grid(&positions, &cells, &[] as &[Array], &[Array::integers("crack", index)])
 }
 
-fn remove(path: &Path) -> io::Result<()> {
-    match fs::remove_file(path) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
-        _ => Ok(()),
-    }
-}
-
 /// Removes the files of steps from `first` on, so that none of an earlier run passes for one of this.
 fn remove_from(dir: &Path, first: usize) -> io::Result<()> {
     for folder in [dir.to_path_buf(), dir.join(RESTART_FOLDER)] {
@@ -133,7 +126,7 @@ fn remove_from(dir: &Path, first: usize) -> io::Result<()> {
         for entry in entries {
             let path = entry?.path();
             if step_of(&path).is_some_and(|step| step >= first) {
-                remove(&path)?;
+                remove_if_there(&path)?;
             }
         }
     }

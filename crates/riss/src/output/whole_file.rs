@@ -21,6 +21,17 @@ pub fn write_whole(path: &Path, content: &[u8]) -> io::Result<()> {
     })
 }
 
+/// Removes a file; none there is fine.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn remove_if_there(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}
+
 /// Removes the temporary files that killed runs have left in a folder; one without the folder is fine.
 ///
 /// # Errors

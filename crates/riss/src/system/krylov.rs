@@ -2,7 +2,7 @@
 //!
 //! Sums are taken over fixed pieces, so that any number of threads gives the same bits.
 
-use nalgebra::SVector;
+use crate::math::Vector;
 use rayon::prelude::*;
 
 /// A linear map, `apply(x, y)` sets `y`.
@@ -39,7 +39,7 @@ const PIECE: usize = 8192;
 
 /// One number for each of `W` vectors that are treated at once. Their entries stand side by side: entry `i` of vector `l` at
 /// `i W + l`.
-pub type Lanes<const W: usize> = SVector<f64, W>;
+pub type Lanes<const W: usize> = Vector<W>;
 
 /// `a · b`.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {

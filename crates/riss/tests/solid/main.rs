@@ -8,6 +8,7 @@ mod convergence;
 mod front_conditions;
 mod front_integral;
 mod near_tip;
+mod node_cells;
 mod patch;
 mod penny;
 mod solver;

@@ -153,7 +153,8 @@ impl Condensed {
     /// Solves for the load and for each opening.
     ///
     /// - `areas`: of each pair
-    /// - `fields`: those that are known; it gets the others
+    /// - `free`: what of the cracks is no pair
+    /// - `known`: fields that were solved for; it gets the others
     ///
     /// # Errors
     /// Those of the solver and of the shape functions.

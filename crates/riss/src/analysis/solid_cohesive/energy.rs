@@ -49,7 +49,7 @@ impl Energy {
                     columns: DMatrix::zeros(CHUNK * POINTS * TERMS, m),
                     gradients: DMatrix::zeros(m, 9 * POINTS),
                     around: DMatrix::zeros(m, 0),
-                    weights_of: DMatrix::zeros(3 * POINTS, 0),
+                    derivatives: DMatrix::zeros(0, 3 * POINTS),
                     ..Scratch::default()
                 };
                 let nodes = p * n / PARTS..(p + 1) * n / PARTS;
@@ -86,11 +86,10 @@ struct Scratch {
     columns: DMatrix<f64>,
     /// Displacement gradients of each field: by component of the displacement, point and direction.
     gradients: DMatrix<f64>,
-    /// Displacements of the neighbors, and their derivatives' weights.
+    /// Displacements of the neighbors, with room for the most so far.
     around: DMatrix<f64>,
-    weights_of: DMatrix<f64>,
     /// Derivatives of each neighbor's shape function at the points of the cell, with their weights.
-    derivatives: Vec<[Vector3; POINTS]>,
+    derivatives: DMatrix<f64>,
 }
 
 /// Adds the strains of all fields in the cell of a node.
@@ -103,35 +102,33 @@ fn add_rows(
     scratch: &mut Scratch,
     sum: &mut Energy,
 ) -> Result<()> {
-    let Scratch { buffer, shape, rows, gradients, around, weights_of, derivatives, .. } = scratch;
+    let Scratch { buffer, shape, rows, gradients, around, derivatives, .. } = scratch;
     let cloud = collocation.cloud();
     if cells.volumes[node] == 0.0 {
         return Ok(());
     }
     collocation.approximation.at_node(node as u32, cloud.sights[node], buffer, shape)?;
     let (offset, root) = (cells.offsets[node], cells.volumes[node].sqrt());
-    derivatives.clear();
-    derivatives.extend(shape.gradients.iter().zip(&shape.second_derivatives).map(|(g, h)| {
-        let [a, b, c] = cells.spreads[node];
-        [(g + h * offset) * root, h * a, h * b, h * c]
-    }));
     let material = &collocation.solid.material;
     let (mu, bulk) = (material.shear(), material.lame() + material.shear() * 2.0 / 3.0);
     let weights = [bulk.sqrt(), (2.0 * mu).sqrt(), mu.sqrt()];
     let place = place * POINTS * TERMS;
-    let n_neighbors = derivatives.len();
-    if weights_of.ncols() < n_neighbors {
+    let n_neighbors = shape.neighbors.len();
+    if derivatives.nrows() < n_neighbors {
         around.resize_horizontally_mut(3 * n_neighbors, 0.0);
-        weights_of.resize_horizontally_mut(n_neighbors, 0.0);
+        derivatives.resize_vertically_mut(n_neighbors, 0.0);
     }
-    let (mut own, mut of_neighbors) = (around.columns_mut(0, 3 * n_neighbors), weights_of.columns_mut(0, n_neighbors));
-    for (k, (j, d)) in shape.neighbors.iter().zip(derivatives.iter()).enumerate() {
-        own.columns_mut(3 * k, 3).copy_from(&fields.columns(3 * *j as usize, 3));
-        of_neighbors.column_mut(k).iter_mut().zip(d.iter().flat_map(|d| d.iter())).for_each(|(a, b)| *a = *b);
+    let spreads = cells.spreads[node];
+    for (k, j) in shape.neighbors.iter().enumerate() {
+        around.columns_mut(3 * k, 3).copy_from(&fields.columns(3 * *j as usize, 3));
+        let (g, h) = (shape.gradients[k], shape.second_derivatives[k]);
+        let points = [(g + h * offset) * root, h * spreads[0], h * spreads[1], h * spreads[2]];
+        derivatives.row_mut(k).iter_mut().zip(points.iter().flatten()).for_each(|(a, b)| *a = *b);
     }
+    let of_neighbors = derivatives.rows(0, n_neighbors);
     for a in 0..3 {
-        let component = own.columns_with_step(a, n_neighbors, 2);
-        gradients.columns_mut(3 * POINTS * a, 3 * POINTS).gemm(1.0, &component, &of_neighbors.transpose(), 0.0);
+        let component = around.columns_with_step(a, n_neighbors, 2);
+        gradients.columns_mut(3 * POINTS * a, 3 * POINTS).gemm(1.0, &component, &of_neighbors, 0.0);
     }
     let force = collocation.solid.body_force.value(&SurfacePoint::inside(cloud.positions[node] + offset));
     for field in 0..fields.nrows() {

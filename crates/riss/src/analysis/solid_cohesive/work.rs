@@ -42,7 +42,7 @@ struct Share {
 }
 
 impl Work {
-    /// Integrates over all loaded and moved parts of the boundary.
+    /// Integrates over the boundary.
     ///
     /// # Errors
     /// Those of the shape functions.

@@ -19,6 +19,8 @@ const AROUND: f64 = 0.25;
 const AROUND_POINTS: usize = 8;
 /// Sweeps in which sights get behind all facets of a node.
 const SWEEPS: usize = 6;
+/// Sine by which they then lie behind each: normals are means over surfaces that bend.
+const BEHIND: f64 = 0.1;
 /// Sectors narrower than this are no facets [rad].
 const NARROW: f64 = 1e-6;
 
@@ -189,21 +191,24 @@ fn split_mouth(sites: &Sites<'_>, site: &Site, foot: &Foot, crack: u32, solid: &
         // The part of the crack behind all pieces of the boundary.
         let inside =
             wedges.iter().fold(around.to_vec(), |left, w| left.iter().filter_map(|c| c.above(-w.normal)).collect());
-        facets.extend(face_facets(surface, site, &inside, crack, side, lift(surface, &on_crack, site, along)));
-        keep_behind(site, &mut facets);
+        // A mouth on a round wall is found up to some tolerance: the node itself may stand on the other side.
+        let off = 4.0 * on_crack.distance;
+        facets.extend(face_facets(surface, site, &inside, crack, side, lift(surface, &on_crack, site, along) + off));
+        keep_behind(site, off, &mut facets);
         push(solid, site, facets);
     }
     solid.pairs.push(FacePair { crack, nodes: [first, first + 1] });
 }
 
-/// Moves the sights of facets behind all of them: what one was lifted over may lie beyond another.
-fn keep_behind(site: &Site, facets: &mut [(Facet<3>, f64)]) {
+/// Moves the sights of facets behind all of them, by `least` or more: what one was lifted over may lie beyond another.
+fn keep_behind(site: &Site, least: f64, facets: &mut [(Facet<3>, f64)]) {
     let normals: Vec<Vector3> = facets.iter().map(|f| f.0.normal).collect();
     for (facet, _) in facets {
         for _ in 0..SWEEPS {
             for normal in &normals {
-                let above = (facet.sight - site.position).dot(normal) + 0.5 * SIGHT_SHIFT * site.spacing;
-                facet.sight -= normal * above.max(0.0);
+                let inward = facet.sight - site.position;
+                let behind = least.max(BEHIND * inward.norm());
+                facet.sight -= normal * (inward.dot(normal) + behind).max(0.0);
             }
         }
     }

@@ -229,6 +229,51 @@ fn cracks_reach_the_round_side_of_a_shaft() {
     }
 }
 
+/// A cone starts at the hollow wall of a void: sights are lifted over the bend of either, and must neither leave
+/// the body nor come to the other side of the crack.
+#[test]
+fn mouths_of_bent_cracks_on_hollow_walls_look_into_the_body() {
+    let mut mesh = cuboid(Aabb { lower: v(-4.0, -4.0, -4.0), upper: v(4.0, 4.0, 4.0) });
+    mesh.append(&cylinder(v(0.0, 0.0, -1.0), v(0.0, 0.0, 1.0), 1.0, ["wall", "floor", "roof"]));
+    const N: u32 = 24;
+    let vertices = (0..2 * N).map(|k| {
+        let (sin, cos) = (2.0 * PI * f64::from(k / 2) / f64::from(N)).sin_cos();
+        let along = if k % 2 == 0 { -0.3 } else { 1.2 };
+        let r = 1.0 + 0.8 * along;
+        v(r * cos, r * sin, 0.6 * along)
+    });
+    let around = |k: u32| [2 * k, 2 * k + 1, 2 * ((k + 1) % N), 2 * ((k + 1) % N) + 1];
+    let cone = crate::geometry::surface::TriangleMesh {
+        vertices: vertices.collect(),
+        triangles: (0..N)
+            .flat_map(|k| {
+                let [a, b, c, d] = around(k);
+                [[a, b, d], [a, d, c]]
+            })
+            .collect(),
+        part_of: vec![0; 2 * N as usize],
+        parts: vec![crate::geometry::surface::Part {
+            name: "cone".into(),
+            shape: crate::geometry::surface::Shape::Triangles,
+        }],
+    };
+    let body = Body::new(mesh, &[CrackShape::Triangles(cone)], 0.4, 0.3);
+    body.check();
+    let cloud = &body.solid.cloud;
+    let is_mouth = |i: &usize| {
+        let Place::Surface(facets) = &cloud.places[*i] else { return false };
+        facets.iter().any(|f| f.surface == SurfaceId::Part(6))
+    };
+    let mouths: Vec<usize> =
+        body.solid.pairs.iter().flat_map(|p| p.nodes.map(|i| i as usize)).filter(is_mouth).collect();
+    assert!(mouths.len() > 20);
+    let obstacles = solid_obstacles(&body.surface, &body.cracks);
+    for (i, facet) in body.facets().filter(|(i, _)| mouths.contains(i)) {
+        assert!(body.surface.contains(facet.sight), "{} {facet:?}", cloud.positions[i]);
+        assert!(obstacles.visible(cloud.sights[i], facet.sight), "{} {facet:?}", cloud.positions[i]);
+    }
+}
+
 #[test]
 fn the_same_request_gives_the_same_bits() {
     let make = || Body::new(cube(), &[CrackShape::disc(v(0.5, 0.5, 0.5), v(0.0, 0.6, 0.8), 0.2)], 0.15, 0.05);
