@@ -8,7 +8,7 @@ use crate::resume::{self, Obstacle};
 use crate::run::RunArguments;
 use crate::sweep::{MOST_RUNS, combinations};
 use crate::table::{aligned, number};
-use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, solid_grow, solid_loading};
+use crate::{BAD_CASE, DONE, STOPPED, diagnostics, interrupt, plane_loading, solid_grow, solid_loading};
 use riss::analysis::{RunSize, linear_static, solid_static};
 use riss::case::{AnyCase, Case, SolidCase};
 use riss::output::run_table::{RowStatus, RunRow, end_name, fronts, keys, table_csv, tips};
@@ -187,6 +187,7 @@ fn run_one(job: &Job) -> RunRow {
 
 fn run_plane(case: &Case, folder: &Path) -> Result<Results, String> {
     match &case.growth {
+        _ if case.loading.is_some() => load(case, folder)?,
         None => run_static(case, folder)?,
         Some(growth) => {
             let beginning = resume::begin(case, folder).map_err(Obstacle::message)?;
@@ -194,6 +195,14 @@ fn run_plane(case: &Case, folder: &Path) -> Result<Results, String> {
         }
     }
     read_results(folder).map_err(|e| format!("the results cannot be read: {e}"))
+}
+
+fn load(case: &Case, folder: &Path) -> Result<(), String> {
+    let loading = case.loading.unwrap_or_default();
+    match plane_loading::follow(case, &loading, None, folder, Progress::new(true))? {
+        Some(_) => Ok(()),
+        None => Err("stopped before the end".into()),
+    }
 }
 
 fn run_solid(case: &SolidCase, folder: &Path) -> Result<SolidResults, String> {

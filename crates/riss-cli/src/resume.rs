@@ -73,18 +73,27 @@ impl Resumed {
         serde_json::from_slice(&text).map_err(|e| format!("{}: {e}", path.display()))
     }
 
-    /// The folder from a step on; the case may differ from that of the earlier run in its growth settings only.
-    pub fn beginning(&self, case: &Case, dir: &Path, from_step: Option<usize>) -> Result<Beginning, Obstacle> {
-        let refused = |message: String| Obstacle::Request(message);
+    /// Whether a case differs from that of the earlier run in its growth settings only.
+    ///
+    /// # Errors
+    /// In what it differs.
+    pub fn unchanged(&self, case: &Case, dir: &Path) -> Result<(), String> {
         let before = Case::parse(&self.text, &self.case, &self.overrides)
-            .map_err(|_| refused(format!("{CASE_COPY} in {} cannot be read any more", dir.display())))?;
-        if let Some(key) = before.differs_outside_growth(case) {
-            return Err(refused(format!(
+            .map_err(|_| format!("{CASE_COPY} in {} cannot be read any more", dir.display()))?;
+        match before.differs_outside_growth(case) {
+            None => Ok(()),
+            Some(key) => Err(format!(
                 "{} differs from the case of {} in `{key}`; only [growth] and [output] may change in between",
                 case.path.display(),
                 dir.display()
-            )));
+            )),
         }
+    }
+
+    /// The folder from a step on; the case may differ from that of the earlier run in its growth settings only.
+    pub fn beginning(&self, case: &Case, dir: &Path, from_step: Option<usize>) -> Result<Beginning, Obstacle> {
+        let refused = |message: String| Obstacle::Request(message);
+        self.unchanged(case, dir).map_err(refused)?;
         if from_step.unwrap_or(0) == 0 && !dir.join(RESULTS_FILE).exists() {
             // Stopped before its first step was complete.
             return begin(case, dir);

@@ -8,7 +8,7 @@ use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::{self, Obstacle, Resumed};
 use crate::sweep::Sweep;
-use crate::{BAD_CASE, DONE, batch, desktop, diagnostics, interrupt, solid, table};
+use crate::{BAD_CASE, DONE, batch, desktop, diagnostics, interrupt, plane_loading, solid, table};
 use clap::Args;
 use riss::analysis::{RunSize, StaticResult, linear_static};
 use riss::case::{AnyCase, Case};
@@ -146,6 +146,15 @@ fn run_one(arguments: &RunArguments) -> u8 {
 
 fn analyze(arguments: &RunArguments, case: &Case, known: Option<Resumed>, dir: &Path) -> u8 {
     let progress = Progress::new(arguments.quiet || arguments.log.is_on_terminal());
+    if let Some(loading) = &case.loading {
+        return match (&case.growth, &known) {
+            (None, Some(_)) => refuse("the case has no [growth]: there is nothing to go on with"),
+            (Some(_), Some(_)) if arguments.from_step.is_some() => {
+                refuse("runs with cohesive cracks go on with the last cracks, not from a step: leave out --from-step")
+            }
+            (_, known) => plane_loading::load(arguments, case, loading, known.as_ref(), dir, progress),
+        };
+    }
     match (&case.growth, known) {
         (None, None) => run_static(arguments, case, dir, progress),
         (None, Some(_)) => refuse("the case has no [growth]: there is nothing to go on with"),

@@ -1,9 +1,10 @@
 //! `riss run` of a solid with cohesive cracks.
 
+use crate::load_curve::{Pace, summary};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::resume::Resumed;
 use crate::run::RunArguments;
-use crate::table::{number, units_line};
+use crate::table::units_line;
 use crate::{BAD_CASE, DONE, STOPPED, desktop, interrupt, results, solid_grow};
 use riss::analysis::{
     CohesiveSurfaces, GrowthEndKind, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, Observer, Stage, Warning,
@@ -15,13 +16,12 @@ use riss::output::{LoadingWriter, REPORT_FILE, RunInfo, RunStatus, SolidResults,
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 /// Loads a solid and says how it broke; returns the exit code.
 pub fn load(
     arguments: &RunArguments,
     case: &SolidCase,
-    cohesive: &CohesiveModel,
+    cohesive: &CohesiveModel<3>,
     loading: &LoadingSettings,
     dir: &Path,
     progress: Progress,
@@ -56,7 +56,7 @@ pub fn load(
             "{}\n{}{}\n{}",
             case.model.title,
             units_line(case.units.as_ref()),
-            summary(&followed.record),
+            summary(&followed.record.curve, followed.record.peak, &followed.record.end),
             results::listed(&followed.files)
         ));
     }
@@ -88,7 +88,7 @@ pub struct Followed {
 /// Why there are no results.
 pub fn follow(
     case: &SolidCase,
-    cohesive: &CohesiveModel,
+    cohesive: &CohesiveModel<3>,
     loading: &LoadingSettings,
     from: Option<CohesiveSurfaces>,
     dir: &Path,
@@ -102,7 +102,7 @@ pub fn follow(
     if let Some(from) = &from {
         writer.write_surfaces(from).map_err(|e| unwritten(&e))?;
     }
-    let mut watch = Watch { writer, progress, error: None, written: None };
+    let mut watch = Watch { writer, progress, error: None, pace: Pace::default() };
     let outcome = solid_loading(&case.model, cohesive, &case.settings, loading, case.growth.as_ref(), from, &mut watch);
     let wall_time_s = watch.progress.finish();
     if let Some(e) = &watch.error {
@@ -124,38 +124,13 @@ pub fn follow(
     Ok(Some(Followed { record, results, files }))
 }
 
-/// What happened, in words.
-fn summary(record: &LoadingRecord) -> String {
-    let say = |p: &LoadPoint| {
-        format!(
-            "load {} at displacement {}, {} dissipated, {} of crack",
-            number(p.load),
-            number(p.displacement),
-            number(p.dissipated_energy),
-            number(p.crack_area)
-        )
-    };
-    let last = record.curve.len() - 1;
-    format!(
-        "first crack: {}\npeak:        {}\nend:         {}\nloading ended after {last} steps: {}\n",
-        say(&record.curve[1.min(last)]),
-        say(&record.curve[record.peak]),
-        say(&record.curve[last]),
-        record.end.reason
-    )
-}
-
 /// Writes the steps with fields.
 struct Watch {
     writer: LoadingWriter,
     progress: Progress,
     error: Option<io::Error>,
-    /// When the load curve was written last.
-    written: Option<Instant>,
+    pace: Pace,
 }
-
-/// The load curve is written as often as this while it is followed.
-const BETWEEN_CURVES: Duration = Duration::from_secs(1);
 
 impl Watch {
     /// Keeps why nothing could be written; goes on unless that is so or Ctrl-C came.
@@ -175,11 +150,7 @@ impl Observer for Watch {
     }
 
     fn load_curve(&mut self, curve: &[LoadPoint]) -> ControlFlow<()> {
-        let is_due = self.written.is_none_or(|time| time.elapsed() >= BETWEEN_CURVES);
-        let written = if is_due { self.writer.write_curve(curve) } else { Ok(()) };
-        if is_due {
-            self.written = Some(Instant::now());
-        }
+        let written = if self.pace.is_due() { self.writer.write_curve(curve) } else { Ok(()) };
         self.after(written)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::model::Model;
-use crate::system::crack_faces::{opening_rows, with_contact};
+use crate::system::crack_faces::{Parting, joined, opening_rows};
 use crate::system::galerkin::LinearSystem;
 use crate::system::{ConstraintMethod, Discretization, LinearSolver, Solution, solve};
 
@@ -35,7 +35,7 @@ pub fn solve_in_contact(
     let Some(contact) = model.contact else {
         return Ok((solve(model, discrete, system, method, solver)?, search));
     };
-    let rows = opening_rows(model, discrete, contact)?;
+    let rows = opening_rows(model, discrete, Parting::Normal, contact.penalty)?;
     let mut closed = vec![false; rows.len()];
     let mut solution = solve(model, discrete, system.clone(), method, solver)?;
     loop {
@@ -51,7 +51,8 @@ pub fn solve_in_contact(
             return Ok((solution, search));
         }
         closed = now;
-        solution = solve(model, discrete, with_contact(&system, &rows, &closed)?, method, solver)?;
+        let touching = rows.iter().zip(&closed).filter(|r| *r.1).map(|r| r.0);
+        solution = solve(model, discrete, joined(&system, touching)?, method, solver)?;
         search.n_solutions += 1;
     }
 }

@@ -47,6 +47,8 @@ type Buffer = (Surroundings, ShapeFunctions<2>);
 
 /// Force of each supported or sprung part on the body over the thickness, in the order of the parts; then the points.
 ///
+/// - `load_factor`: on prescribed displacements
+///
 /// # Errors
 /// Those of the shape functions.
 pub fn reactions(
@@ -54,6 +56,7 @@ pub fn reactions(
     discrete: &Discretization,
     solution: &Solution,
     method: &ConstraintMethod,
+    load_factor: f64,
 ) -> Result<Vec<(String, Vector2)>> {
     let on = Supports::new(model, method);
     let (mut around, mut shape) = Buffer::default();
@@ -80,7 +83,8 @@ pub fn reactions(
             let traction = model.material.stress(&shape.gradient(&solution.parameters)) * point.normal;
             for (k, support) in supports.iter().enumerate() {
                 let direction = support.direction.vector(&at);
-                let gap = u.dot(&direction) - support.value.value(&model.material, support.direction, &at);
+                let value = support.value.value(&model.material, support.direction, &at);
+                let gap = u.dot(&direction) - load_factor * value;
                 let mut force = -stabilization * gap;
                 if with_traction {
                     force += traction.dot(&direction);

@@ -19,11 +19,11 @@ use crate::fracture::{
 };
 use crate::geometry::predicates::distance_to_segment;
 use crate::math::{Matrix2, Vector2};
-use crate::model::{FieldPoint, Model, RigidMotion};
+use crate::model::{Model, RigidMotion};
 use crate::nodes::spacing::SpacingField;
 use crate::nodes::triangulation::SIGHT_SHIFT;
 use crate::nodes::{generate, generate_at};
-use crate::system::crack_faces::contact_pressure;
+use crate::system::crack_faces::joining_pressure;
 use crate::system::galerkin::displacement_gradients;
 use crate::system::solve::UNBALANCED;
 use crate::system::{ConstraintMethod, Discretization, Solution, assemble};
@@ -56,16 +56,38 @@ pub(super) fn solve_step(
     observer: &mut dyn Observer,
 ) -> Result<StaticResult> {
     let mut warnings = Warnings::new(observer);
-    let (Solved { discrete, solution, gradients, method, cracks }, refinements) = match &settings.accuracy {
+    let (solved, refinements) = match &settings.accuracy {
         Some(accuracy) => refine(model, settings, accuracy, &mut warnings)?,
         None => {
             let discrete = discretize(model, settings, warnings.observer)?;
             (solve_on(model, settings, discrete, &mut warnings)?, vec![])
         }
     };
+    let before = warnings.list;
+    let result = result_of(model, settings, &solved, (step, 1.0), observer)?;
+    let warnings = before.into_iter().chain(result.warnings.iter().cloned()).collect();
+    Ok(StaticResult { refinements, warnings, ..result })
+}
+
+/// What is read from a solution.
+///
+/// - `at`: number of the step, and the factor on the loads
+///
+/// # Errors
+/// Those of the shape functions.
+pub(super) fn result_of(
+    model: &Model,
+    settings: &Settings,
+    solved: &Solved,
+    at: (usize, f64),
+    observer: &mut dyn Observer,
+) -> Result<StaticResult> {
+    let mut warnings = Warnings::new(observer);
+    let (step, load_factor) = at;
+    let Solved { discrete, solution, gradients, method, cracks } = solved;
     discrete.notes.iter().for_each(|n| warnings.add(n.clone()));
     if let CrackSmoothing::Transparency { .. } = settings.approximation.resolved_smoothing().cracks() {
-        let n = nodes_too_near(model, &discrete);
+        let n = nodes_too_near(model, discrete);
         if n > 0 {
             warnings.about("approximation.smoothing", format!(
                 "{n} nodes near crack tips are closer to the crack than a quarter of the node spacing: where the crack is \
@@ -74,20 +96,20 @@ pub(super) fn solve_step(
         }
     }
     warnings.observer.stage(Stage::Fields);
-    let energy = strain_energy(model, &discrete, &gradients);
+    let energy = strain_energy(model, discrete, gradients);
     let fields = match warnings.observer.wants_fields(step) {
-        true => sample_fields(model, &discrete, &solution)?,
+        true => sample_fields(model, discrete, solution)?,
         false => Fields::default(),
     };
-    let reactions = reactions(model, &discrete, &solution, &method)?;
+    let reactions = reactions(model, discrete, solution, method, load_factor)?;
     let step = StepRecord {
         step,
-        load_factor: 1.0,
+        load_factor,
         cycles: None,
         cycles_range: None,
         stability: None,
         end: None,
-        cracks,
+        cracks: cracks.clone(),
         reactions,
     };
     let nodes = discrete.approximation.nodes();
@@ -104,7 +126,7 @@ pub(super) fn solve_step(
         strain_energy: energy.strain_energy * model.thickness,
         energy_error: energy.relative_error,
         residual: solution.residual,
-        refinements,
+        refinements: vec![],
         fields,
         nodes: node_records.collect(),
         extra_parameters: solution.parameters[nodes.len()..].to_vec(),
@@ -286,7 +308,7 @@ fn evaluate_tip(
     let field = RememberedField::new(&solved);
     let force = |p: Vector2| body_force_at(model, solution, p);
     let acts = model.body_force.is_some() || solution.imbalance > UNBALANCED;
-    let contact = |p: Vector2| contact_pressure(discrete, &solution.contact_pressures, id.crack, p);
+    let contact = |p: Vector2| joining_pressure(discrete, &solution.contact_pressures, id.crack, p);
     let pressure = |p: Vector2| model.face_pressure(id.crack, p) + contact(p);
     let face_pressure = match model.loads_faces(id.crack) {
         true => Some(FacePressure { at: &pressure, tip_opening: tip_opening(discrete, solution, &view)? }),
@@ -358,8 +380,5 @@ fn tip_opening(discrete: &Discretization, solution: &Solution, view: &TipView) -
 
 /// All that acts inside the body: the model's body force, and what balances loads out of balance.
 fn body_force_at(model: &Model, solution: &Solution, p: Vector2) -> Vector2 {
-    let at = FieldPoint { position: p, normal: Vector2::zeros() };
-    let given =
-        model.body_force.as_ref().map_or(Vector2::zeros(), |f| Vector2::new(f.0[0].value(&at), f.0[1].value(&at)));
-    given + solution.balancing_force.at(p)
+    model.body_force_at(p) + solution.balancing_force.at(p)
 }

@@ -1,5 +1,6 @@
 //! Analyses: they join all the stages below and report to an [`Observer`].
 
+pub mod cohesive;
 pub mod contact;
 pub mod convergence;
 pub mod crack_growth;
@@ -11,6 +12,7 @@ pub mod linear_static;
 pub mod memory;
 pub mod method;
 pub mod node_function;
+pub mod plane_cohesive;
 pub mod record;
 pub mod refinement;
 pub mod settings;
@@ -25,19 +27,19 @@ pub mod solid_record;
 pub mod solid_static;
 mod warnings;
 
+pub use cohesive::{LoadPoint, LoadingSettings};
 pub use convergence::{ConvergenceStudy, Limit, converge};
 pub use crack_growth::{GrowthSettings, GrowthState, crack_growth};
 pub use linear_static::{discretize, linear_static};
 pub use memory::RunSize;
 pub use method::Method;
 pub use node_function::{NodeFunction, nearest_node, sample_node_function};
+pub use plane_cohesive::{CohesivePaths, GrownPath, PlaneLoadingRecord, plane_loading};
 pub use record::*;
 pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;
 pub use solid_boundary::BoundaryFields;
-pub use solid_cohesive::{
-    CohesiveSurfaces, GrownSurface, LoadPoint, LoadingRecord, LoadingSettings, LoadingStep, solid_loading,
-};
+pub use solid_cohesive::{CohesiveSurfaces, GrownSurface, LoadingRecord, LoadingStep, solid_loading};
 pub use solid_convergence::{SolidConvergenceStudy, converge_solid};
 pub use solid_growth::{FrontCriterion, SolidGrowthSettings, SolidGrowthState, SolidStep, solid_growth};
 pub use solid_record::{FrontPointRecord, FrontRecord, OpenedCrack, SolidResult, principal_stresses};

@@ -1,7 +1,9 @@
 //! What an analysis reports.
 
+use super::cohesive::LoadPoint;
 use super::crack_growth::GrowthState;
-use super::solid_cohesive::{CohesiveSurfaces, LoadPoint, LoadingStep};
+use super::plane_cohesive::CohesivePaths;
+use super::solid_cohesive::{CohesiveSurfaces, LoadingStep};
 use super::solid_growth::{SolidGrowthState, SolidStep};
 use super::warnings::Warning;
 use crate::crack::{End, EndKind, TipFrame};
@@ -66,6 +68,10 @@ pub trait Observer {
     fn surfaces_grown(&mut self, _surfaces: &CohesiveSurfaces) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
+    /// Cohesive cracks of a plane body have grown, and are loaded from rest next. A break ends the analysis there.
+    fn paths_grown(&mut self, _paths: &CohesivePaths) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
     /// A state of a loaded solid with cohesive cracks is complete with its fields. A break ends the analysis there.
     fn loading_step(&mut self, _step: &LoadingStep) -> ControlFlow<()> {
         ControlFlow::Continue(())
@@ -87,7 +93,8 @@ impl Observer for Silent {}
 pub struct StepRecord {
     /// Number of the step, from 0.
     pub step: usize,
-    /// Factor on the loads at which the crack grows; 1 unless growth is quasi-static. All else is for a factor of 1.
+    /// Factor on the loads at which the crack grows; 1 unless growth is quasi-static, and all else is for a factor of 1.
+    /// Cohesive cracks: the factor on the loads that all else is for.
     pub load_factor: f64,
     /// Load cycles so far, in fatigue.
     pub cycles: Option<f64>,
@@ -387,4 +394,6 @@ pub struct CrackFaces {
     pub left: Vec<Vector2>,
     /// Displacement of the face to the right of the path [length].
     pub right: Vec<Vector2>,
+    /// Traction that pulls the faces together along the normal [stress]; none unless the crack is cohesive.
+    pub traction: Vec<f64>,
 }

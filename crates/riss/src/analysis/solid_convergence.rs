@@ -1,8 +1,9 @@
 //! The same solid on nodes of several spacings: the limits that factors along fronts, or load curves, go to, and how fast.
 
+use super::cohesive::LoadingSettings;
 use super::convergence::{Limit, limits};
 use super::record::{Observer, Stage};
-use super::solid_cohesive::{LoadingSettings, solid_loading};
+use super::solid_cohesive::solid_loading;
 use super::solid_record::FrontRecord;
 use super::solid_static::{SolidSettings, solid_static};
 use super::warnings::Warning;

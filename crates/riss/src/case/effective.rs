@@ -19,6 +19,7 @@ impl Case {
         ];
         groups.extend(s.accuracy.as_ref().map(|accuracy| ("accuracy", json!(accuracy))));
         groups.extend(self.growth.as_ref().map(|growth| ("growth", json!(growth))));
+        groups.extend(self.loading.as_ref().map(|loading| ("loading", json!(loading))));
         groups.push(("output", json!(self.output)));
         let mut rows = vec![];
         groups.iter().for_each(|(key, value)| add_rows(key, value, &mut rows));

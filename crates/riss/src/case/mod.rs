@@ -17,7 +17,7 @@ mod solid;
 mod units;
 mod values;
 
-use crate::analysis::{GrowthSettings, Settings};
+use crate::analysis::{GrowthSettings, LoadingSettings, Settings};
 use crate::model::{Model, UnitNames};
 pub use abaqus::{import_abaqus, read_abaqus_as_case};
 use build::Built;
@@ -54,6 +54,8 @@ pub struct Case {
     pub settings: Settings,
     /// Crack growth, if the cracks grow.
     pub growth: Option<GrowthSettings>,
+    /// How far cohesive cracks are loaded, if there are some.
+    pub loading: Option<LoadingSettings>,
     /// What to write.
     pub output: OutputSettings,
     /// Units, if the case says them.
@@ -94,10 +96,11 @@ impl Case {
         let mut document = Document::parse(text, overrides, &mut problems);
         let built = if problems.is_empty() { build::build(&mut document, path, &mut problems) } else { None };
         match built {
-            Some(Built { model, settings, growth, output, units, notes }) if problems.is_empty() => Ok(Self {
+            Some(Built { model, settings, growth, loading, output, units, notes }) if problems.is_empty() => Ok(Self {
                 model,
                 settings,
                 growth,
+                loading,
                 output,
                 units,
                 path: path.into(),

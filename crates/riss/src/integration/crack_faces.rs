@@ -59,14 +59,11 @@ impl CrackFaceElement {
 pub fn crack_face_elements(model: &Model, chains: &Chains, settings: &IntegrationSettings) -> Vec<CrackFaceElement> {
     let rule = Rule::new(model, settings);
     let mut elements: Vec<CrackFaceElement> = vec![];
-    for pieces in chains.crack_pieces.chunk_by(|a, b| a.crack == b.crack) {
-        if !model.loads_faces(pieces[0].crack) {
-            continue;
-        }
+    let ends = |p: &CrackPiece| p.points.map(|i| chains.positions[i as usize]);
+    for (pieces, knots) in stretches(model, chains, ends) {
         let first = elements.last().map_or(0, |e| e.stretch + 2);
-        for (k, knots) in knots(pieces.len()).windows(2).enumerate() {
+        for (k, knots) in knots.windows(2).enumerate() {
             let of_stretch = &pieces[knots[0]..knots[1]];
-            let ends = |p: &CrackPiece| p.points.map(|i| chains.positions[i as usize]);
             let length = |p: &CrackPiece| (ends(p)[1] - ends(p)[0]).norm();
             let total: f64 = of_stretch.iter().map(length).sum();
             let mut start = 0.0;
@@ -78,6 +75,32 @@ pub fn crack_face_elements(model: &Model, chains: &Chains, settings: &Integratio
         }
     }
     elements
+}
+
+/// Runs of pieces of one crack that something acts on, each with the places of its knots.
+///
+/// Of a cohesive crack a run ends where a notch begins: a function of a knot that reached into it would act on less than its
+/// faces.
+fn stretches<'c>(
+    model: &Model,
+    chains: &'c Chains,
+    ends: impl Fn(&CrackPiece) -> [Vector2; 2],
+) -> Vec<(&'c [CrackPiece], Vec<usize>)> {
+    let mut result = vec![];
+    for pieces in chains.crack_pieces.chunk_by(|a, b| a.crack == b.crack) {
+        let crack = pieces[0].crack;
+        if let Some(cohesive) = model.cohesive_crack(crack) {
+            let is_tied = |p: &CrackPiece| {
+                let [a, b] = ends(p);
+                !cohesive.is_notch((a + b) * 0.5)
+            };
+            let runs = pieces.chunk_by(|a, b| is_tied(a) == is_tied(b)).filter(|run| is_tied(&run[0]));
+            result.extend(runs.map(|run| (run, even_knots(run.len()))));
+        } else if model.loads_faces(crack) {
+            result.push((pieces, knots(pieces.len())));
+        }
+    }
+    result
 }
 
 /// Points along pieces as the cells beside them have them.
@@ -108,10 +131,16 @@ impl Rule {
 /// Where stretches begin and end among the pieces of a crack.
 fn knots(n_pieces: usize) -> Vec<usize> {
     let at_end = PIECES_AT_END.min(n_pieces / 2);
-    let between = n_pieces - 2 * at_end;
-    let n = between / PIECES_BETWEEN;
-    let inner = (0..=n).map(|k| at_end + k * between / n.max(1));
+    let inner = even_knots(n_pieces - 2 * at_end).into_iter().map(|k| at_end + k);
     let mut knots: Vec<usize> = std::iter::once(0).chain(inner).chain([n_pieces]).collect();
+    knots.dedup();
+    knots
+}
+
+/// The same where pressures are even along the crack.
+fn even_knots(n_pieces: usize) -> Vec<usize> {
+    let n = (n_pieces / PIECES_BETWEEN).max(1);
+    let mut knots: Vec<usize> = (0..=n).map(|k| k * n_pieces / n).collect();
     knots.dedup();
     knots
 }

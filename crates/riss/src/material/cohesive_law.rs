@@ -40,6 +40,15 @@ pub struct CohesiveLaw {
     pub shear_ratio: f64,
 }
 
+/// Which way the traction of an opened pair goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Branch {
+    /// Along the softening curve, as the opening grows.
+    Softening,
+    /// Along the secant to the origin from the largest effective opening so far [length].
+    Secant(f64),
+}
+
 /// Traction between opened faces and its derivative, by components: the normal one first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cohesion {
@@ -106,6 +115,14 @@ impl CohesiveLaw {
         (n.max(0.0).powi(2) + self.shear_ratio.powi(2) * (s * s + t * t)).sqrt()
     }
 
+    /// Derivative of the effective opening by the components of the opening.
+    pub fn effective_gradient(&self, opening: [f64; 3]) -> [f64; 3] {
+        let size = self.effective(opening).max(f64::MIN_POSITIVE);
+        let [n, s, t] = opening;
+        let weight = self.shear_ratio.powi(2) / size;
+        [n.max(0.0) / size, s * weight, t * weight]
+    }
+
     /// Share of its strength that a tied pair bears [1]; the traction's normal component comes first.
     pub fn exhaustion(&self, traction: [f64; 3]) -> f64 {
         let [n, s, t] = traction;
@@ -132,12 +149,20 @@ impl CohesiveLaw {
     /// - `history`: largest effective opening before [length]
     pub fn cohesion(&self, opening: [f64; 3], history: f64) -> Cohesion {
         let largest = history.max(self.first_opening());
+        let is_loaded = self.effective(opening) >= largest;
+        self.cohesion_on(opening, if is_loaded { Branch::Softening } else { Branch::Secant(largest) })
+    }
+
+    /// The same on a given branch: smooth, whatever the opening was before.
+    pub fn cohesion_on(&self, opening: [f64; 3], branch: Branch) -> Cohesion {
         let effective = self.effective(opening);
-        let (secant, change) = if effective >= largest {
-            let [t, derivative, _] = self.softening(effective);
-            (t / effective, (derivative - t / effective) / effective)
-        } else {
-            (self.softening(largest)[0] / largest, 0.0)
+        let (secant, change) = match branch {
+            Branch::Softening => {
+                let at = effective.max(self.first_opening());
+                let [t, derivative, _] = self.softening(at);
+                (t / at, if effective < at { 0.0 } else { (derivative - t / at) / at })
+            }
+            Branch::Secant(largest) => (self.softening(largest)[0] / largest, 0.0),
         };
         let weight = |k: usize| if k == 0 { 1.0 } else { self.shear_ratio.powi(2) };
         let is_apart = opening[0] > 0.0;
@@ -245,11 +270,14 @@ mod tests {
             assert!(law.cohesion([-w, 0.0, 0.0], w).traction[0] < -100.0);
             assert_eq!(law.exhaustion([3.0, 0.0, 0.0]), 1.0);
             let gradient = law.exhaustion_gradient([2.0, 0.5, 1.0]);
+            let of_opening = law.effective_gradient([2.0, 0.5, 1.0]);
             for j in 0..3 {
                 let mut t = [2.0, 0.5, 1.0];
                 t[j] += 1e-6;
                 let slope = (law.exhaustion(t) - law.exhaustion([2.0, 0.5, 1.0])) / 1e-6;
                 assert!((slope - gradient[j]).abs() < 1e-5);
+                let slope = (law.effective(t) - law.effective([2.0, 0.5, 1.0])) / 1e-6;
+                assert!((slope - of_opening[j]).abs() < 1e-5);
             }
         }
     }

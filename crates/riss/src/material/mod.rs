@@ -3,5 +3,5 @@
 pub mod cohesive_law;
 pub mod elasticity;
 
-pub use cohesive_law::{Cohesion, CohesiveLaw, Softening};
+pub use cohesive_law::{Branch, Cohesion, CohesiveLaw, Softening};
 pub use elasticity::{Elasticity, PlaneState};

@@ -41,3 +41,12 @@ pub fn turn_left(a: Vector2) -> Vector2 {
 pub fn direction(angle: f64) -> Vector2 {
     Vector2::new(angle.cos(), angle.sin())
 }
+
+/// In-plane principal stresses, the greater first, and the unit direction of the greater.
+pub fn principal_stresses(stress: &Matrix2) -> (f64, f64, Vector2) {
+    let middle = 0.5 * stress.trace();
+    let difference = 0.5 * (stress[(0, 0)] - stress[(1, 1)]);
+    let shear = 0.5 * (stress[(0, 1)] + stress[(1, 0)]);
+    let radius = difference.hypot(shear);
+    (middle + radius, middle - radius, direction(0.5 * shear.atan2(difference)))
+}

@@ -50,6 +50,8 @@ pub struct Model {
     pub loads: Vec<BoundaryLoad>,
     /// Pressures on the faces of cracks.
     pub crack_face_loads: Vec<CrackFaceLoad>,
+    /// Softening of cohesive cracks, if there are any.
+    pub cohesive: Option<CohesiveModel<2>>,
     /// What keeps crack faces from overlapping; without it they may.
     pub contact: Option<Contact>,
     /// Force per volume.
@@ -82,6 +84,7 @@ impl Model {
             cracks: vec![],
             loads: vec![],
             crack_face_loads: vec![],
+            cohesive: None,
             contact: None,
             body_force: None,
             point_loads: vec![],
@@ -99,9 +102,28 @@ impl Model {
         self.crack_face_loads.iter().filter(|l| l.crack == crack).map(|l| l.pressure.value(&at)).sum()
     }
 
+    /// Loads on an edge of the boundary.
+    pub fn loads_on(&self, edge: EdgeId) -> impl Iterator<Item = &BoundaryLoad> {
+        let acts = move |part: PartId| self.domain.parts[part].edges.contains(&edge);
+        self.loads.iter().filter(move |l| l.part.map_or(self.domain.outline().contains(&edge), acts))
+    }
+
+    /// Force per volume at a point.
+    pub fn body_force_at(&self, position: Vector2) -> Vector2 {
+        let at = FieldPoint { position, normal: Vector2::zeros() };
+        self.body_force.as_ref().map_or(Vector2::zeros(), |f| Vector2::new(f.0[0].value(&at), f.0[1].value(&at)))
+    }
+
     /// Whether anything acts on the faces of a crack.
     pub fn loads_faces(&self, crack: usize) -> bool {
-        self.contact.is_some() || self.crack_face_loads.iter().any(|l| l.crack == crack)
+        self.contact.is_some()
+            || self.crack_face_loads.iter().any(|l| l.crack == crack)
+            || self.cohesive_crack(crack).is_some()
+    }
+
+    /// What of a crack is cohesive, if anything is.
+    pub fn cohesive_crack(&self, crack: usize) -> Option<&CohesiveCrack<2>> {
+        self.cohesive.as_ref()?.crack(crack)
     }
 
     /// All tips, in the order of cracks and ends.

@@ -21,12 +21,12 @@ pub struct SolidModel {
     /// Material, loads and supports.
     pub solid: Solid<3>,
     /// Cohesive cracks, if there are some.
-    pub cohesive: Option<CohesiveModel>,
+    pub cohesive: Option<CohesiveModel<3>>,
 }
 
 impl SolidModel {
     /// What a crack is before the load, if it is cohesive.
-    pub fn cohesive_crack(&self, crack: usize) -> Option<&CohesiveCrack> {
-        self.cohesive.as_ref()?.cracks[crack].as_ref()
+    pub fn cohesive_crack(&self, crack: usize) -> Option<&CohesiveCrack<3>> {
+        self.cohesive.as_ref()?.crack(crack)
     }
 }

@@ -22,6 +22,10 @@ const BODY_FRACTION: f64 = 1.0 / 25.0;
 /// what hides nodes behind a crack makes it longer or shorter by up to a tenth of the spacing at its tip, however fine the
 /// nodes are elsewhere.
 const TIP_FRACTION: f64 = 1.0 / 300.0;
+/// Spacing along a cohesive crack as a fraction of the length that is tied, and of the length that the process zone is
+/// proportional to.
+const LIGAMENT_FRACTION: f64 = 1.0 / 64.0;
+const ZONE_FRACTION: f64 = 1.0 / 20.0;
 /// Spacing along an arc as a fraction of its radius.
 const ARC_FRACTION: f64 = 0.12;
 /// Spacing as a fraction of the thickness of the body at a boundary point.
@@ -121,6 +125,7 @@ impl SpacingField {
         let mut field = Self { growth: settings.growth.unwrap_or(GROWTH), ..Self::uniform(largest) };
         // Tips are refined with the body: else K would stay as far off as the nodes at the tip leave it.
         field.add_tips(model, settings.tip_spacing, TIP_FRACTION * (largest / automatic).min(1.0));
+        field.add_ligaments(model, settings.tip_spacing, (largest / automatic).min(1.0));
         field.add_kinks(model);
         field.add_junctions(model);
         field.add_edges(model);
@@ -187,14 +192,33 @@ impl SpacingField {
 
     /// - `fraction`: spacing over the free radius of a tip, if none is `given`
     fn add_tips(&mut self, model: &Model, given: Option<f64>, fraction: f64) {
-        for (tip, frame) in model.tips() {
+        let singular = model.tips().into_iter().filter(|t| model.cohesive_crack(t.0.crack).is_none());
+        for (tip, frame) in singular {
             let spacing = given.unwrap_or_else(|| fraction * free_radius(model, tip.crack, frame.position));
             self.add(Place::Point(frame.position), spacing);
         }
     }
 
+    /// Along what is tied of cohesive cracks, the process zone must be followed wherever it comes.
+    ///
+    /// - `factor`: on the spacing, if none is `given`
+    fn add_ligaments(&mut self, model: &Model, given: Option<f64>, factor: f64) {
+        let Some(cohesive) = &model.cohesive else { return };
+        let zone = cohesive.law.characteristic_length(model.material.effective_young());
+        for (index, crack) in model.cracks.iter().enumerate() {
+            let Some(own) = cohesive.crack(index) else { continue };
+            let tied = || crack.segments().filter(|(a, b)| !own.is_notch((a + b) * 0.5));
+            let length: f64 = tied().map(|(a, b)| (b - a).norm()).sum();
+            let automatic = (LIGAMENT_FRACTION * length).min(ZONE_FRACTION * zone) * factor;
+            for (start, end) in tied() {
+                self.add(Place::Curve(Curve::Line { start, end }), given.unwrap_or(automatic));
+            }
+        }
+    }
+
     fn add_kinks(&mut self, model: &Model) {
-        for crack in &model.cracks {
+        let singular = (0..model.cracks.len()).filter(|c| model.cohesive_crack(*c).is_none());
+        for crack in singular.map(|c| &model.cracks[c]) {
             for w in crack.vertices.windows(3) {
                 let (a, b) = (w[1] - w[0], w[2] - w[1]);
                 if cross(a, b).abs().atan2(a.dot(&b)) > SMOOTH_TURN {

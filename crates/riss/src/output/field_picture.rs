@@ -2,12 +2,11 @@
 
 use super::color_map::viridis;
 use super::contours::Surface;
-use super::fields::principal_stresses;
 use super::svg::{LineEnd, MARGIN, Pixel, Svg};
 use super::whole_file::write_whole;
 use crate::analysis::{Fields, StaticResult};
 use crate::geometry::aabb::Aabb;
-use crate::math::{Vector2, cross};
+use crate::math::{Vector2, cross, principal_stresses};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::io;

@@ -5,7 +5,7 @@
 use super::OutputOptions;
 use super::vtk::{Array, CellType, Cells, grid};
 use crate::analysis::{CrackFaces, Fields, NodeRecord, StaticResult};
-use crate::math::{Matrix2, Vector2, direction, turn_left};
+use crate::math::{Matrix2, Vector2, principal_stresses, turn_left};
 use std::io;
 
 /// A file of one step.
@@ -48,15 +48,6 @@ pub const STEP_FILE_KINDS: [&str; 4] = ["fields", "cracks", "nodes", "integratio
 /// Name of a file of a step.
 pub fn step_file_name(kind: &str, step: usize) -> String {
     format!("{kind}_{step:04}.vtu")
-}
-
-/// In-plane principal stresses, the greater first, and the unit direction of the greater.
-pub fn principal_stresses(stress: &Matrix2) -> (f64, f64, Vector2) {
-    let middle = 0.5 * stress.trace();
-    let difference = 0.5 * (stress[(0, 0)] - stress[(1, 1)]);
-    let shear = 0.5 * (stress[(0, 1)] + stress[(1, 0)]);
-    let radius = difference.hypot(shear);
-    (middle + radius, middle - radius, direction(0.5 * shear.atan2(difference)))
 }
 
 pub(super) fn check(fields: &Fields) -> io::Result<()> {
@@ -133,6 +124,10 @@ fn cracks(cracks: &[CrackFaces]) -> Vec<u8> {
             first += n;
         }
     }
+    let traction = |c: &CrackFaces| -> Vec<f64> {
+        (0..c.positions.len()).map(|k| c.traction.get(k).copied().unwrap_or(0.0)).collect()
+    };
+    let tractions: Vec<f64> = cracks.iter().flat_map(traction).collect();
     let faces = |face: fn(&CrackFaces) -> &[Vector2]| cracks.iter().flat_map(move |c| face(c).iter().copied());
     grid(
         &twice(&positions),
@@ -141,6 +136,7 @@ fn cracks(cracks: &[CrackFaces]) -> Vec<u8> {
             Array::vectors("displacement", faces(|c| &c.left).chain(faces(|c| &c.right))),
             Array::vectors("opening", twice(&jump)),
             Array::scalars("normal_opening", twice(&normal_opening)),
+            Array::scalars("cohesive_traction", twice(&tractions)),
         ],
         &[Array::integers("crack", crack_of_cell), Array::integers("face", face_of_cell)],
     )

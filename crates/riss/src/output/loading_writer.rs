@@ -1,13 +1,14 @@
 //! Writes what a solid with cohesive cracks does under load: the states with fields as they come, then curve and results.
 
+use super::load_curve::{LOAD_CURVE_FILE, load_curve, table};
 use super::report::REPORT_FILE;
 use super::report::solid_scene::{Scenes, clear_scenes, scene_files, write_scene};
-use super::run_writer::RESTART_FOLDER;
+use super::run_writer::write_file;
 use super::solid_files::{boundary, cracks_with, nodes};
 use super::solid_report::solid_report;
-use super::solid_results::{LoadCurvePoint, SolidResults};
+use super::solid_results::SolidResults;
 use super::vtk::collection;
-use super::whole_file::{remove_if_there, write_all, write_whole};
+use super::whole_file::{read_if_there, remove_if_there, write_all, write_whole};
 use super::{RESULTS_FILE, RunInfo};
 use crate::analysis::{CohesiveSurfaces, LoadPoint, LoadingRecord, LoadingStep, SolidResult};
 use std::fs;
@@ -16,8 +17,6 @@ use std::path::{Path, PathBuf};
 
 /// Kinds of files of a state.
 const KINDS: [&str; 3] = ["nodes", "boundary", "cracks"];
-/// Name of the load curve as a table.
-pub const LOAD_CURVE_FILE: &str = "load_curve.csv";
 /// Where the surfaces stand from which a run can go on.
 const SURFACES_FILE: &str = "restart/surfaces.json";
 
@@ -34,11 +33,7 @@ pub struct LoadingWriter {
 /// # Errors
 /// What the system says; `InvalidData` if the file is none of ours.
 pub fn grown_surfaces(dir: &Path) -> io::Result<Option<CohesiveSurfaces>> {
-    match fs::read(dir.join(SURFACES_FILE)) {
-        Ok(text) => Ok(Some(serde_json::from_slice(&text)?)),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(e),
-    }
+    read_if_there(&dir.join(SURFACES_FILE))
 }
 
 impl LoadingWriter {
@@ -59,8 +54,7 @@ impl LoadingWriter {
     /// # Errors
     /// What the system says.
     pub fn write_surfaces(&self, surfaces: &CohesiveSurfaces) -> io::Result<()> {
-        fs::create_dir_all(self.dir.join(RESTART_FOLDER))?;
-        write_whole(&self.dir.join(SURFACES_FILE), &serde_json::to_vec(surfaces)?)
+        write_file(&self.dir, SURFACES_FILE, &serde_json::to_vec(surfaces)?)
     }
 
     /// Writes the load curve as far as it is known, so that a run that is killed leaves it.
@@ -68,8 +62,7 @@ impl LoadingWriter {
     /// # Errors
     /// What the system says.
     pub fn write_curve(&self, curve: &[LoadPoint]) -> io::Result<()> {
-        let points: Vec<LoadCurvePoint> = curve.iter().enumerate().map(|(k, p)| LoadCurvePoint::new(k, p)).collect();
-        write_whole(&self.dir.join(LOAD_CURVE_FILE), &table(&points)?)
+        write_whole(&self.dir.join(LOAD_CURVE_FILE), &table(&load_curve(curve))?)
     }
 
     /// Writes the fields of a step.
@@ -120,12 +113,4 @@ impl LoadingWriter {
 
 fn file_name(kind: &str, step: usize) -> String {
     format!("{kind}-{step:04}.vtu")
-}
-
-fn table(curve: &[LoadCurvePoint]) -> io::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(vec![]);
-    for point in curve {
-        writer.serialize(point)?;
-    }
-    writer.into_inner().map_err(|e| io::Error::other(e.to_string()))
 }

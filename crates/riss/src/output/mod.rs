@@ -1,7 +1,7 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
-//! contract), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
+//! contract), [`load_curve`] and [`plane_loading_writer`] (of cohesive cracks), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
 //! [`solid_writer`] (step by step), [`loading_writer`] (of cohesive cracks), [`solid_report`], [`solid_picture()`],
@@ -15,8 +15,10 @@ pub mod exports;
 pub mod field_picture;
 pub mod fields;
 pub mod history;
+pub mod load_curve;
 pub mod loading_writer;
 pub mod model_picture;
+pub mod plane_loading_writer;
 pub mod report;
 pub mod results;
 pub mod run_table;
@@ -37,8 +39,10 @@ pub mod whole_file;
 pub use comparison::Comparison;
 pub use convergence::write_convergence;
 pub use field_picture::{FieldQuantity, write_field_picture};
-pub use loading_writer::{LOAD_CURVE_FILE, LoadingWriter, grown_surfaces};
+pub use load_curve::LOAD_CURVE_FILE;
+pub use loading_writer::{LoadingWriter, grown_surfaces};
 pub use model_picture::write_model_picture;
+pub use plane_loading_writer::{PlaneLoadingWriter, grown_paths};
 pub use report::{REPORT_FILE, RunSource, describe_run, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};

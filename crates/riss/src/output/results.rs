@@ -3,6 +3,7 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::RunInfo;
+use super::load_curve::{LoadCurvePoint, LoadingResults};
 use crate::analysis::{
     CrackRecord, GrowthEnd, RefinementRecord, Stability, StaticResult, StepRecord, TipRecord, TipStatus,
 };
@@ -53,8 +54,14 @@ pub struct Results {
     pub files: Vec<String>,
     /// Why crack growth ended, where it did.
     pub growth_end: Option<GrowthEnd>,
-    /// Steps in order; a static run has one.
+    /// Steps in order; a static run has one. With cohesive cracks points of the load curve, by their numbers.
     pub steps: Vec<StepResults>,
+    /// How far cohesive cracks were loaded.
+    #[serde(default)]
+    pub loading: Option<LoadingResults>,
+    /// Load curve of cohesive cracks from rest; none without.
+    #[serde(default)]
+    pub load_curve: Vec<LoadCurvePoint>,
 }
 
 /// How a run ended.
@@ -73,7 +80,8 @@ pub enum RunStatus {
 pub struct StepResults {
     /// Number of the step, from 0.
     pub step: usize,
-    /// Factor on the loads at which the crack grows; 1 unless growth is quasi-static. All else is for a factor of 1.
+    /// Factor on the loads at which the crack grows; 1 unless growth is quasi-static, and all else is for a factor of 1.
+    /// Cohesive cracks: the factor on the loads that all else is for.
     pub load_factor: Option<f64>,
     /// Load cycles so far, in fatigue.
     pub cycles: Option<f64>,
@@ -215,7 +223,17 @@ impl Results {
             files: vec![],
             growth_end: last.step.end.clone(),
             steps,
+            loading: None,
+            load_curve: vec![],
         }
+    }
+
+    /// What is known of the whole run only when it is over.
+    pub(super) fn told(&mut self, info: &RunInfo) {
+        self.status = info.status;
+        self.wall_time_s = finite(info.wall_time_s);
+        self.stage_time_s = sum_by_stage(&info.stage_time_s);
+        self.peak_memory_bytes = info.peak_memory_bytes;
     }
 
     /// As text, with a line break at the end.

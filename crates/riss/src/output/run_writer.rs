@@ -2,10 +2,11 @@
 
 use super::fields::{STEP_FILE_KINDS, step_file_name, step_files};
 use super::history::history_csv;
+use super::load_curve::{LOAD_CURVE_FILE, LoadCurvePoint, LoadingResults, table};
 use super::report::{self, REPORT_FILE, REPORT_FOLDER, RunSource};
 use super::results::{Results, RunStatus, StepResults};
 use super::vtk::collection;
-use super::whole_file::{remove_leftovers, write_whole};
+use super::whole_file::{remove_if_there, remove_leftovers, write_whole};
 use super::{FieldQuantity, OutputOptions, PICTURE_FILE, RESULTS_FILE, RunInfo, field_picture};
 use crate::analysis::{GrowthState, StaticResult};
 use std::fs;
@@ -133,6 +134,26 @@ impl RunWriter {
         Ok(written)
     }
 
+    /// Puts the load curve beside its steps; returns the paths, `results.json` last.
+    ///
+    /// # Errors
+    /// What the system says; `NotFound` if no step was written.
+    pub(super) fn write_loading(
+        &self,
+        info: &RunInfo,
+        loading: LoadingResults,
+        load_curve: Vec<LoadCurvePoint>,
+    ) -> io::Result<Vec<PathBuf>> {
+        let mut results = read_results(&self.dir)?;
+        results.told(info);
+        results.files.insert(0, LOAD_CURVE_FILE.into());
+        let table = table(&load_curve)?;
+        (results.loading, results.load_curve) = (Some(loading), load_curve);
+        let report = report::report(&self.dir, &results)?.into_bytes();
+        let json = results.to_json().into_bytes();
+        self.write_all(vec![(LOAD_CURVE_FILE.into(), table), (REPORT_FILE.into(), report), (RESULTS_FILE.into(), json)])
+    }
+
     fn write_all(&self, files: Vec<(String, Vec<u8>)>) -> io::Result<Vec<PathBuf>> {
         let write = |(name, content): (String, Vec<u8>)| {
             write_file(&self.dir, &name, &content)?;
@@ -180,13 +201,6 @@ pub fn read_results(dir: &Path) -> io::Result<Results> {
 
 pub(super) fn restart_name(step: usize) -> String {
     format!("{RESTART_FOLDER}/step_{step:04}.json")
-}
-
-fn remove_if_there(path: &Path) -> io::Result<()> {
-    match fs::remove_file(path) {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
-        _ => Ok(()),
-    }
 }
 
 fn remove_all_leftovers(dir: &Path) -> io::Result<()> {

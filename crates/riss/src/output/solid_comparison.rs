@@ -1,6 +1,7 @@
 //! How the results of two runs of solids differ: factors along fronts, steps of growth, load curves.
 
-use super::solid_results::{FrontPointResults, FrontResults, LoadCurvePoint, SolidResults};
+use super::load_curve::LoadCurvePoint;
+use super::solid_results::{FrontPointResults, FrontResults, SolidResults};
 use crate::geometry::path_distance::path_distance;
 use crate::math::{Vector2, Vector3};
 use schemars::JsonSchema;

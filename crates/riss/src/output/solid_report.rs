@@ -4,9 +4,11 @@
 //! What the user wrote is escaped, always.
 
 use super::color_map::VIRIDIS;
+use super::report::chart::{Curve, cell, chart, digits};
+use super::report::loading::loading_section;
 use super::report::solid_scene::Scenes;
 use super::report::{RunSource, SOLID_VIEW, html, push_data, push_solid_script};
-use super::solid_results::{FrontPointResults, FrontResults, LoadCurvePoint, SolidResults};
+use super::solid_results::{FrontPointResults, FrontResults, SolidResults};
 use std::fmt::Write;
 
 const STYLE: &str = "
@@ -33,24 +35,11 @@ pre { font-size: 13px; } .scroll button { float: right; }
 th { color: var(--quiet); } th:first-child, td:first-child { text-align: left; }
 ";
 
-/// Width and height of a chart, and its margins: left, right, top, bottom [pixels].
-const SIZE: [f64; 2] = [620.0, 280.0];
-const MARGINS: [f64; 4] = [74.0, 12.0, 26.0, 40.0];
-/// Colors that also the color-blind tell apart, on white and black.
-const COLORS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
-
 /// A curve with its name and half the height of its error bars.
 struct Series<'a> {
     name: &'a str,
     value: fn(&FrontPointResults) -> Option<f64>,
     bar: fn(&FrontPointResults) -> Option<f64>,
-}
-
-/// A curve through points with half the height of their error bars.
-struct Curve<'a> {
-    name: &'a str,
-    points: Vec<[f64; 3]>,
-    has_marks: bool,
 }
 
 const FACTORS: [Series; 3] = [
@@ -74,7 +63,7 @@ pub fn solid_report(results: &SolidResults, scenes: &Scenes) -> String {
     push_warnings(&mut page, results);
     push_view(&mut page, scenes);
     push_growth(&mut page, results);
-    push_loading(&mut page, results);
+    page.push_str(&loading_section(results.loading.as_ref(), &results.load_curve));
     for (index, front) in results.fronts.iter().enumerate() {
         push_front(&mut page, index, front);
     }
@@ -147,34 +136,6 @@ fn push_growth(page: &mut String, results: &SolidResults) {
     page.push_str("</section>\n");
 }
 
-fn push_loading(page: &mut String, results: &SolidResults) {
-    let Some(loading) = &results.loading else { return };
-    let point = |p: &LoadCurvePoint| Some([p.displacement?, p.load?, 0.0]);
-    let points: Vec<[f64; 3]> = results.load_curve.iter().filter_map(point).collect();
-    let end = points.iter().map(|p| p[0]).fold(f64::MIN_POSITIVE, f64::max);
-    let energy = |get: fn(&LoadCurvePoint) -> Option<f64>| {
-        results.load_curve.iter().filter_map(|p| Some([p.displacement?, get(p)?, 0.0])).collect()
-    };
-    let curve = |name, points| Curve { name, points, has_marks: false };
-    let energies = [
-        curve("work", energy(|p| p.external_work)),
-        curve("stored", energy(|p| p.elastic_energy)),
-        curve("dissipated", energy(|p| p.dissipated_energy)),
-    ];
-    page.push_str("<section>\n<h2>Load curve</h2>\n<div class=\"charts\">\n");
-    page.push_str(&chart(&[curve("load", points)], end, "displacement", "load over displacement"));
-    page.push_str(&chart(&energies, end, "displacement", "energies over displacement"));
-    let peak = &loading.peak;
-    let _ = write!(
-        page,
-        "</div>\n<p>Peak: load {} at displacement {}. Dissipated in the end: {}. Loading ended: {}</p>\n</section>\n",
-        cell(peak.load),
-        cell(peak.displacement),
-        cell(loading.dissipated_energy),
-        html(&loading.end.reason)
-    );
-}
-
 fn push_front(page: &mut String, index: usize, front: &FrontResults) {
     let ends = if front.closed { "closed" } else { "open" };
     let (crack, length) = (html(&front.crack), cell(front.length));
@@ -243,48 +204,6 @@ fn push_row(page: &mut String, cells: &[String]) {
     cells.iter().for_each(|c| page.push_str(&format!("<td>{c}")));
 }
 
-fn cell(value: Option<f64>) -> String {
-    value.map_or("–".into(), digits)
-}
-
-/// Five digits.
-fn digits(v: f64) -> String {
-    let exponent = if v == 0.0 { 0.0 } else { v.abs().log10().floor() };
-    if (-4.0..6.0).contains(&exponent) {
-        format!("{v:.*}", (4.0 - exponent).max(0.0) as usize)
-    } else {
-        format!("{v:.4e}")
-    }
-}
-
-/// Where values go in a chart.
-struct Axes {
-    lower: [f64; 2],
-    upper: [f64; 2],
-}
-
-impl Axes {
-    fn x(&self, s: f64) -> f64 {
-        let width = SIZE[0] - MARGINS[0] - MARGINS[1];
-        MARGINS[0] + width * (s - self.lower[0]) / (self.upper[0] - self.lower[0])
-    }
-
-    fn y(&self, v: f64) -> f64 {
-        let height = SIZE[1] - MARGINS[2] - MARGINS[3];
-        SIZE[1] - MARGINS[3] - height * (v - self.lower[1]) / (self.upper[1] - self.lower[1])
-    }
-
-    /// Round values along an axis.
-    fn ticks(&self, axis: usize) -> Vec<f64> {
-        let (low, high) = (self.lower[axis], self.upper[axis]);
-        let rough = (high - low) / 5.0;
-        let unit = 10f64.powf(rough.log10().floor());
-        let step = unit * [1.0, 2.0, 5.0, 10.0].into_iter().find(|f| f * unit >= rough).unwrap_or(10.0);
-        let first = (low / step).ceil() as i64;
-        (first..).map(|k| k as f64 * step).take_while(|v| *v <= high + 1e-9 * step).take(20).collect()
-    }
-}
-
 /// Curves over the length along a front; nothing where no point has a value.
 fn front_chart(front: &FrontResults, series: &[Series], label: &str) -> String {
     let known = |s: &Series| -> Vec<[f64; 3]> {
@@ -293,58 +212,4 @@ fn front_chart(front: &FrontResults, series: &[Series], label: &str) -> String {
     };
     let curves: Vec<Curve> = series.iter().map(|s| Curve { name: s.name, points: known(s), has_marks: true }).collect();
     chart(&curves, front.length.filter(|l| *l > 0.0).unwrap_or(1.0), "s", label)
-}
-
-/// Curves from zero up to `end`.
-fn chart(curves: &[Curve], end: f64, axis: &str, label: &str) -> String {
-    let all = || curves.iter().flat_map(|c| &c.points);
-    if all().count() == 0 {
-        return String::new();
-    }
-    let least = all().map(|p| p[1] - p[2]).fold(0.0, f64::min);
-    let greatest = all().map(|p| p[1] + p[2]).fold(0.0, f64::max);
-    let room = (0.05 * (greatest - least)).max(f64::MIN_POSITIVE);
-    let axes = Axes { lower: [0.0, least - room], upper: [end, greatest + room] };
-    let [width, height] = SIZE;
-    let mut svg = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\">\n", html(label));
-    push_grid(&mut svg, &axes, axis);
-    for (k, curve) in curves.iter().enumerate() {
-        let color = COLORS[k % COLORS.len()];
-        let at = |p: &[f64; 3]| format!("{:.1},{:.1}", axes.x(p[0]), axes.y(p[1]));
-        let points: Vec<String> = curve.points.iter().map(at).collect();
-        let _ = writeln!(svg, "<polyline class=\"line\" stroke=\"{color}\" points=\"{}\"/>", points.join(" "));
-        for [s, value, bar] in curve.points.iter().filter(|_| curve.has_marks) {
-            let (x, low, high) = (axes.x(*s), axes.y(value - bar), axes.y(value + bar));
-            let _ = writeln!(
-                svg,
-                "<line stroke=\"{color}\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{low:.1}\" y2=\"{high:.1}\"/>"
-            );
-            let _ = writeln!(svg, "<circle fill=\"{color}\" cx=\"{x:.1}\" cy=\"{:.1}\" r=\"2.5\"/>", axes.y(*value));
-        }
-        let x = MARGINS[0] + 70.0 * k as f64;
-        let _ = writeln!(svg, "<rect fill=\"{color}\" x=\"{x}\" y=\"8\" width=\"10\" height=\"10\"/>");
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"17\">{}</text>", x + 15.0, curve.name);
-    }
-    svg + "</svg>\n"
-}
-
-fn push_grid(svg: &mut String, axes: &Axes, name: &str) {
-    let (left, right, bottom) = (MARGINS[0], SIZE[0] - MARGINS[1], SIZE[1] - MARGINS[3]);
-    for v in axes.ticks(1) {
-        let y = axes.y(v);
-        let _ = writeln!(svg, "<line class=\"grid\" x1=\"{left}\" x2=\"{right}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>");
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", left - 6.0, y + 4.0, tick(v));
-    }
-    for s in axes.ticks(0) {
-        let x = axes.x(s);
-        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>", bottom + 18.0, tick(s));
-    }
-    let _ = writeln!(svg, "<text x=\"{right}\" y=\"{}\" text-anchor=\"end\">{name}</text>", SIZE[1] - 6.0);
-}
-
-/// A round number without the traces of binary arithmetic.
-fn tick(v: f64) -> String {
-    let text = format!("{v:.3e}");
-    let exact: f64 = text.parse().unwrap_or(v);
-    if exact != 0.0 && !(1e-4..1e6).contains(&exact.abs()) { format!("{exact:e}") } else { format!("{exact}") }
 }

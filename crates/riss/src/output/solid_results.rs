@@ -2,10 +2,9 @@
 //!
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
+use super::load_curve::{LoadCurvePoint, LoadingResults, load_curve};
 use super::{RunInfo, RunStatus};
-use crate::analysis::{
-    FrontPointRecord, FrontRecord, GrownSurface, GrowthEnd, LoadPoint, LoadingRecord, SolidResult, SolidStep,
-};
+use crate::analysis::{FrontPointRecord, FrontRecord, GrowthEnd, LoadingRecord, SolidResult, SolidStep};
 use crate::model::{SolidModel, UnitNames};
 use crate::nodes::cloud::Place;
 use schemars::JsonSchema;
@@ -65,58 +64,6 @@ pub struct SolidResults {
     /// Load curve of cohesive cracks from rest; none without.
     #[serde(default)]
     pub load_curve: Vec<LoadCurvePoint>,
-}
-
-/// How far cohesive cracks were loaded.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LoadingResults {
-    /// The point of the greatest load.
-    pub peak: LoadCurvePoint,
-    /// Energy dissipated in the end [stress·length³].
-    pub dissipated_energy: Option<f64>,
-    /// Why it ended.
-    pub end: GrowthEnd,
-    /// Surfaces from first to last, if they grow.
-    #[serde(default)]
-    pub surfaces: Vec<GrownSurface>,
-}
-
-/// A point of the load curve.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LoadCurvePoint {
-    /// Its number, from 0 at rest; names the files of those that have some.
-    pub step: usize,
-    /// Factor on all loads and prescribed displacements.
-    pub load_factor: Option<f64>,
-    /// Displacement on which the load does its work [length].
-    pub displacement: Option<f64>,
-    /// Resultant of the loads; with prescribed displacements, the force that takes the largest of them [stress·length²].
-    pub load: Option<f64>,
-    /// Energy dissipated by the cracks [stress·length³].
-    pub dissipated_energy: Option<f64>,
-    /// Energy stored in the body and in unbroken bonds [stress·length³].
-    pub elastic_energy: Option<f64>,
-    /// Work of the load [stress·length³], which the two energies add up to.
-    pub external_work: Option<f64>,
-    /// Area of crack that has reached the strength [area].
-    pub crack_area: Option<f64>,
-}
-
-impl LoadCurvePoint {
-    pub(super) fn new(step: usize, point: &LoadPoint) -> Self {
-        Self {
-            step,
-            load_factor: finite(point.load_factor),
-            displacement: finite(point.displacement),
-            load: finite(point.load),
-            dissipated_energy: finite(point.dissipated_energy),
-            elastic_energy: finite(point.elastic_energy),
-            external_work: finite(point.external_work),
-            crack_area: finite(point.crack_area),
-        }
-    }
 }
 
 /// A step of growth.
@@ -308,17 +255,10 @@ impl SolidResults {
 
     /// Adds how the cracks were loaded.
     pub fn loaded(&mut self, record: &LoadingRecord) {
-        let points = record.curve.iter().enumerate().map(|(step, p)| LoadCurvePoint::new(step, p));
-        self.load_curve = points.collect();
-        let last = self.load_curve.last();
-        let dissipated_energy = last.and_then(|p| p.dissipated_energy);
-        self.crack_area = last.and_then(|p| p.crack_area);
-        self.loading = (self.load_curve.get(record.peak).cloned()).map(|peak| LoadingResults {
-            peak,
-            dissipated_energy,
-            end: record.end.clone(),
-            surfaces: record.surfaces.clone(),
-        });
+        self.load_curve = load_curve(&record.curve);
+        self.crack_area = self.load_curve.last().and_then(|p| p.crack_area);
+        let loading = LoadingResults::new(&self.load_curve, record.peak, &record.end);
+        self.loading = loading.map(|l| LoadingResults { surfaces: record.surfaces.clone(), ..l });
     }
 
     /// Adds how the cracks grew.

@@ -1,5 +1,6 @@
 //! Files that appear whole or not at all.
 
+use serde::de::DeserializeOwned;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -57,6 +58,18 @@ fn write_synced(path: &Path, content: &[u8]) -> io::Result<()> {
     let mut file: File = OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
     file.write_all(content)?;
     file.sync_all()
+}
+
+/// What a JSON file says; none if it is not there.
+///
+/// # Errors
+/// What the system says; `InvalidData` if the file says something else.
+pub(super) fn read_if_there<T: DeserializeOwned>(path: &Path) -> io::Result<Option<T>> {
+    match fs::read(path) {
+        Ok(text) => Ok(Some(serde_json::from_slice(&text)?)),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(e),
+    }
 }
 
 /// Writes files of a folder one after the other, each by its name; returns their paths.

@@ -47,6 +47,11 @@ impl<'a> Supports<'a> {
         Self { loads, supports, springs, is_curved, method: *method }
     }
 
+    /// Supports alone.
+    pub fn without_loads(self) -> Self {
+        Self { loads: vec![vec![]; self.loads.len()], springs: vec![vec![]; self.springs.len()], ..self }
+    }
+
     /// Supports on an edge.
     pub fn on(&self, edge: EdgeId) -> &[&'a BoundarySupport] {
         &self.supports[edge]

@@ -1,6 +1,6 @@
-//! What acts on crack faces: given pressures, and contact by penalty.
+//! What acts on crack faces: given pressures, and what joins both faces, in contact or by cohesion.
 //!
-//! The contact pressure is linear between knots along a crack, as Lagrange multipliers would be: each knot carries a
+//! What joins them is linear between knots along a crack, as Lagrange multipliers would be: each knot carries a
 //! pressure in proportion to the mean overlap around it. A pressure in proportion to the overlap at each integration
 //! point asks for more than the shape functions on both sides can follow, and oscillates.
 
@@ -11,8 +11,8 @@ use crate::approximation::moving_least_squares::Derivatives;
 use crate::error::Result;
 use crate::geometry::predicates::distance_to_segment;
 use crate::integration::CrackFaceElement;
-use crate::math::Vector2;
-use crate::model::{Contact, Model};
+use crate::math::{Vector2, turn_left};
+use crate::model::Model;
 use std::collections::BTreeMap;
 
 /// Adds the pressures on crack faces, per thickness: equal and opposite forces on both.
@@ -52,33 +52,70 @@ fn visit_faces(
     Ok(())
 }
 
+/// Along what the faces part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parting {
+    /// The normal to the left of the path.
+    Normal,
+    /// The direction of the path.
+    Sliding,
+}
+
+impl Parting {
+    fn direction(self, normal: Vector2) -> Vector2 {
+        match self {
+            Self::Normal => normal,
+            Self::Sliding => -turn_left(normal),
+        }
+    }
+}
+
 /// Mean opening around a knot of a crack, as a sum over nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OpeningRow {
     /// Nodes, ascending.
     nodes: Vec<u32>,
-    /// `∫ N [φ] n ds` of each node, `N` the hat function of the knot.
+    /// `∫ N [φ] n ds` of each node, `N` the hat function of the knot, `n` along what the faces part.
     jumps: Vec<Vector2>,
     /// `∫ N ds` [length].
-    length: f64,
-    /// Contact pressure per overlap [stress/length].
-    stiffness: f64,
+    pub length: f64,
+    /// Pressure per overlap [stress/length].
+    pub stiffness: f64,
 }
 
 impl OpeningRow {
+    /// Mean opening [length].
+    pub fn opening(&self, parameters: &[Vector2]) -> f64 {
+        let terms = self.nodes.iter().zip(&self.jumps);
+        terms.map(|(&i, jump)| jump.dot(&parameters[i as usize])).sum::<f64>() / self.length
+    }
+
     /// Contact pressure of nodal parameters [stress]: negative where the faces are apart.
     pub fn pressure(&self, parameters: &[Vector2]) -> f64 {
-        let terms = self.nodes.iter().zip(&self.jumps);
-        let opening = terms.map(|(&i, jump)| jump.dot(&parameters[i as usize])).sum::<f64>() / self.length;
-        -self.stiffness * opening
+        -self.stiffness * self.opening(parameters)
+    }
+
+    /// Adds the forces of a traction that pulls the faces together, linear around the knot [stress].
+    pub fn pull(&self, traction: f64, load: &mut [f64]) {
+        for (&i, jump) in self.nodes.iter().zip(&self.jumps) {
+            load[2 * i as usize] -= traction * jump.x;
+            load[2 * i as usize + 1] -= traction * jump.y;
+        }
     }
 }
 
 /// A row for each knot.
 ///
+/// - `penalty`: pressure per overlap over Young's modulus and the length that belongs to a knot
+///
 /// # Errors
 /// Those of the shape functions.
-pub fn opening_rows(model: &Model, discrete: &Discretization, contact: Contact) -> Result<Vec<OpeningRow>> {
+pub fn opening_rows(
+    model: &Model,
+    discrete: &Discretization,
+    parting: Parting,
+    penalty: f64,
+) -> Result<Vec<OpeningRow>> {
     let n_knots = discrete.crack_faces.last().map_or(0, |e| e.stretch + 2);
     let mut rows = vec![OpeningRow::default(); n_knots];
     let mut jumps: Vec<BTreeMap<u32, Vector2>> = vec![BTreeMap::new(); n_knots];
@@ -87,7 +124,8 @@ pub fn opening_rows(model: &Model, discrete: &Discretization, contact: Contact) 
         let shares = |along: f64| [(element.stretch, 1.0 - along), (element.stretch + 1, along)];
         visit_faces(discrete, element, &mut scratch, |point, node, jump| {
             for (knot, share) in shares(point.along) {
-                *jumps[knot].entry(node).or_default() += point.normal * (jump * share * point.weight);
+                let direction = parting.direction(point.normal);
+                *jumps[knot].entry(node).or_default() += direction * (jump * share * point.weight);
             }
         })?;
         for point in &element.points {
@@ -95,18 +133,40 @@ pub fn opening_rows(model: &Model, discrete: &Discretization, contact: Contact) 
         }
     }
     for (row, jumps) in rows.iter_mut().zip(jumps) {
-        row.stiffness = contact.penalty * model.material.young / row.length;
+        row.stiffness = penalty * model.material.young / row.length;
         (row.nodes, row.jumps) = jumps.into_iter().unzip();
     }
     Ok(rows)
 }
 
-/// The system with the contact pressure of the closed rows.
+/// A place along a crack between which what joins the faces is linear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot {
+    /// Index of the crack.
+    pub crack: usize,
+    /// Its place.
+    pub position: Vector2,
+}
+
+/// The knots, in the order of rows.
+pub fn knots(discrete: &Discretization) -> Vec<Knot> {
+    let mut knots = vec![];
+    for element in &discrete.crack_faces {
+        for (end, is_knot) in [element.range[0] == 0.0, element.range[1] == 1.0].into_iter().enumerate() {
+            if is_knot && knots.len() == element.stretch + end {
+                knots.push(Knot { crack: element.crack, position: element.ends[end] });
+            }
+        }
+    }
+    knots
+}
+
+/// The system with faces that are joined by the pressure of rows.
 ///
 /// # Errors
 /// None: the sums of rows cannot fail.
-pub fn with_contact(system: &LinearSystem, rows: &[OpeningRow], closed: &[bool]) -> Result<LinearSystem> {
-    let active: Vec<&OpeningRow> = rows.iter().zip(closed).filter(|r| *r.1).map(|r| r.0).collect();
+pub fn joined<'a>(system: &LinearSystem, active: impl Iterator<Item = &'a OpeningRow>) -> Result<LinearSystem> {
+    let active: Vec<&OpeningRow> = active.collect();
     let matrix = system.matrix.widened(active.iter().map(|r| r.nodes.as_slice()));
     let mut result = LinearSystem { matrix, load: system.load.clone() };
     result.add(active.len(), ELEMENTS, |i, _, local| {
@@ -128,10 +188,10 @@ fn add_products(local: &mut LocalMatrix, row: &OpeningRow) {
     }
 }
 
-/// Contact pressure at a point of a crack path [stress], linear between knots.
+/// What joins the faces at a point of a crack path [stress], linear between knots.
 ///
-/// - `pressures`: at each knot; none if there is no contact
-pub fn contact_pressure(discrete: &Discretization, pressures: &[f64], crack: usize, position: Vector2) -> f64 {
+/// - `pressures`: at each knot; none if nothing does
+pub fn joining_pressure(discrete: &Discretization, pressures: &[f64], crack: usize, position: Vector2) -> f64 {
     if pressures.is_empty() {
         return 0.0;
     }

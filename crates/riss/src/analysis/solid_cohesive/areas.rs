@@ -30,7 +30,7 @@ impl FaceArea {
 pub(super) fn face_areas(
     model: &SolidModel,
     crack: usize,
-    cohesive: Option<&CohesiveCrack>,
+    cohesive: Option<&CohesiveCrack<3>>,
     positions: &[Vector3],
     spacing: &SolidSpacing,
 ) -> Vec<FaceArea> {

@@ -8,6 +8,7 @@ use super::areas::FaceArea;
 use super::energy::Energy;
 use super::free_faces::FreeFaces;
 use super::work::Work;
+use crate::analysis::cohesive::Condensed;
 use crate::error::{Error, Result};
 use crate::integration::NodeCells;
 use crate::math::{Vector, Vector3};
@@ -29,26 +30,6 @@ pub(super) enum Parting {
     Normal,
     /// In all directions that supports leave free.
     Full,
-}
-
-/// The linear relations, from one solution for each opening of unit size.
-///
-/// A row is a component of the traction of a pair, a column a component of its opening.
-pub(super) struct Condensed {
-    /// First row of each pair, and the end of the last.
-    pub rows: Vec<usize>,
-    /// First column of each pair, and the end of the last.
-    pub columns: Vec<usize>,
-    /// Area that each pair stands for [area].
-    pub areas: Vec<f64>,
-    /// Traction of the load [stress].
-    by_load: Vec<f64>,
-    /// Traction of each opening of unit size [stress/length]: column by column.
-    by_opening: Vec<Vec<f64>>,
-    /// Work of the loads, and of the reactions to a unit load factor, on each opening of unit size and, last, on what the load
-    /// does [stress·length³].
-    of_loads: Vec<f64>,
-    of_reactions: Vec<f64>,
 }
 
 /// A tied body, ready to be solved.
@@ -149,110 +130,68 @@ impl<'a> TiedBody<'a> {
     }
 }
 
-impl Condensed {
-    /// Solves for the load and for each opening.
-    ///
-    /// - `areas`: of each pair
-    /// - `free`: what of the cracks is no pair
-    /// - `known`: fields that were solved for; it gets the others
-    ///
-    /// # Errors
-    /// Those of the solver and of the shape functions.
-    pub fn new(
-        body: &TiedBody<'_>,
-        collocation: &Collocation<3>,
-        parting: Parting,
-        areas: &[FaceArea],
-        free: &FreeFaces,
-        known: &mut UnitFields,
-    ) -> Result<Self> {
-        known.complete(body, parting)?;
-        let (mut rows, mut columns, mut fields) = (vec![0], vec![0], vec![]);
-        for (k, pair) in body.tied.pairs.iter().enumerate() {
-            let n = body.n_columns(k, parting);
-            rows.push(rows[k] + pair.directions.len());
-            columns.push(columns[k] + n);
-            fields.extend(&known.of_openings[k][..n]);
-        }
-        fields.push(&known.of_load);
-        let last = fields.len() - 1;
-        let all = DMatrix::from_fn(fields.len(), known.of_load.len(), |field, dof| fields[field][dof]);
-        let energy = Energy::new(collocation, &body.cells, &all)?;
-        check_stiffness(collocation, &energy, &columns, areas)?;
-        let of_field = |k: usize| body.work.of(fields[k]) + free.work(fields[k]) + energy.body_work[k];
-        let of_loads: Vec<f64> = (0..=last).into_par_iter().map(of_field).collect();
-        let mut tractions: Vec<Vec<f64>> = fields
-            .par_iter()
-            .enumerate()
-            .map(|(k, field)| body.tractions(field, if k == last { 1.0 } else { 0.0 }))
-            .collect();
-        let mut own_areas = vec![];
-        for (pair, area) in areas.iter().enumerate() {
-            let (rows, directions) = (rows[pair]..rows[pair + 1], &body.tied.pairs[pair].directions);
-            for (row, column) in rows.clone().zip(columns[pair]..columns[pair + 1]) {
-                let (direction, normal) = (directions[row - rows.start], directions[0]);
-                // What is left of the mean gradient, by Gauss' theorem, is the opening that the field has on the ligament.
-                let opened = body.work.outside(fields[column]) - free.opened(fields[column]) - energy.gradients[column];
-                let whole = direction.dot(&(opened * normal));
-                let own = (whole - area.total + area.cohesive).max(LEAST_AREA * area.cohesive);
-                for (k, of_field) in tractions.iter_mut().enumerate() {
-                    let by_loads = if k == last { of_loads[column] } else { 0.0 };
-                    of_field[row] = (by_loads - energy.mutual[(column, k)]) / own;
-                }
-                if row == rows.start {
-                    own_areas.push(own);
-                }
+/// Solves for the load and for each opening.
+///
+/// - `areas`: of each pair
+/// - `free`: what of the cracks is no pair
+/// - `known`: fields that were solved for; it gets the others
+///
+/// # Errors
+/// Those of the solver and of the shape functions.
+pub(super) fn condense(
+    body: &TiedBody<'_>,
+    collocation: &Collocation<3>,
+    parting: Parting,
+    areas: &[FaceArea],
+    free: &FreeFaces,
+    known: &mut UnitFields,
+) -> Result<Condensed> {
+    known.complete(body, parting)?;
+    let (mut rows, mut columns, mut fields) = (vec![0], vec![0], vec![]);
+    for (k, pair) in body.tied.pairs.iter().enumerate() {
+        let n = body.n_columns(k, parting);
+        rows.push(rows[k] + pair.directions.len());
+        columns.push(columns[k] + n);
+        fields.extend(&known.of_openings[k][..n]);
+    }
+    fields.push(&known.of_load);
+    let last = fields.len() - 1;
+    let all = DMatrix::from_fn(fields.len(), known.of_load.len(), |field, dof| fields[field][dof]);
+    let energy = Energy::new(collocation, &body.cells, &all)?;
+    check_stiffness(collocation, &energy, &columns, areas)?;
+    let of_field = |k: usize| body.work.of(fields[k]) + free.work(fields[k]) + energy.body_work[k];
+    let of_loads: Vec<f64> = (0..=last).into_par_iter().map(of_field).collect();
+    let mut tractions: Vec<Vec<f64>> = fields
+        .par_iter()
+        .enumerate()
+        .map(|(k, field)| body.tractions(field, if k == last { 1.0 } else { 0.0 }))
+        .collect();
+    let mut own_areas = vec![];
+    for (pair, area) in areas.iter().enumerate() {
+        let (rows, directions) = (rows[pair]..rows[pair + 1], &body.tied.pairs[pair].directions);
+        for (row, column) in rows.clone().zip(columns[pair]..columns[pair + 1]) {
+            let (direction, normal) = (directions[row - rows.start], directions[0]);
+            // What is left of the mean gradient, by Gauss' theorem, is the opening that the field has on the ligament.
+            let opened = body.work.outside(fields[column]) - free.opened(fields[column]) - energy.gradients[column];
+            let whole = direction.dot(&(opened * normal));
+            let own = (whole - area.total + area.cohesive).max(LEAST_AREA * area.cohesive);
+            for (k, of_field) in tractions.iter_mut().enumerate() {
+                let by_loads = if k == last { of_loads[column] } else { 0.0 };
+                of_field[row] = (by_loads - energy.mutual[(column, k)]) / own;
             }
-            // The strong form knows the mean over the area of the pair.
-            for row in rows.skip(columns[pair + 1] - columns[pair]) {
-                tractions.iter_mut().for_each(|t| t[row] /= area.share());
+            if row == rows.start {
+                own_areas.push(own);
             }
         }
-        let by_load = tractions.pop().unwrap_or_default();
-        let mut of_reactions: Vec<f64> = energy.mutual.row(last).iter().copied().collect();
-        of_reactions[last] -= of_loads[last];
-        Ok(Self { rows, columns, areas: own_areas, by_load, by_opening: tractions, of_loads, of_reactions })
-    }
-
-    /// Number of pairs.
-    pub fn n_pairs(&self) -> usize {
-        self.rows.len() - 1
-    }
-
-    /// Traction in a row by the opening of a column [stress/length].
-    pub fn by_opening(&self, row: usize, column: usize) -> f64 {
-        self.by_opening[column][row]
-    }
-
-    /// Traction in a row by the load [stress].
-    pub fn by_load(&self, row: usize) -> f64 {
-        self.by_load[row]
-    }
-
-    /// Tractions of all pairs [stress]; also their rates from the rates of load factor and openings.
-    pub fn tractions(&self, load_factor: f64, openings: &[f64]) -> Vec<f64> {
-        let mut tractions: Vec<f64> = self.by_load.iter().map(|t| t * load_factor).collect();
-        for (column, w) in self.by_opening.iter().zip(openings).filter(|(_, w)| **w != 0.0) {
-            tractions.iter_mut().zip(column).for_each(|(t, s)| *t += s * w);
+        // The strong form knows the mean over the area of the pair.
+        for row in rows.skip(columns[pair + 1] - columns[pair]) {
+            tractions.iter_mut().for_each(|t| t[row] /= area.share());
         }
-        tractions
     }
-
-    /// Work of unit loads, and of the reactions to a unit load factor, on the displacements [stress·length³].
-    pub fn work(&self, load_factor: f64, openings: &[f64]) -> [f64; 2] {
-        [&self.of_loads, &self.of_reactions]
-            .map(|of_fields| of_fields.iter().zip(openings.iter().chain([&load_factor])).map(|(a, b)| a * b).sum())
-    }
-
-    /// Components of a pair in a vector of all rows, zero where the pair has fewer.
-    pub fn of_pair(&self, pair: usize, rows: &[f64]) -> [f64; 3] {
-        components(&rows[self.rows[pair]..self.rows[pair + 1]])
-    }
-
-    /// The same in a vector of all columns.
-    pub fn opening_of(&self, pair: usize, columns: &[f64]) -> [f64; 3] {
-        components(&columns[self.columns[pair]..self.columns[pair + 1]])
-    }
+    let by_load = tractions.pop().unwrap_or_default();
+    let mut of_reactions: Vec<f64> = energy.mutual.row(last).iter().copied().collect();
+    of_reactions[last] -= of_loads[last];
+    Ok(Condensed { rows, columns, areas: own_areas, by_load, by_opening: tractions, of_loads, of_reactions })
 }
 
 /// Looks for openings that move far more of the body than their surroundings.
@@ -270,8 +209,4 @@ fn check_stiffness(collocation: &Collocation<3>, energy: &Energy, columns: &[usi
                   use another spacing, or nodes that are closer around the cracks"
             .into();
     Err(Error::Factorization { reason })
-}
-
-fn components(values: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|k| values.get(k).copied().unwrap_or(0.0))
 }

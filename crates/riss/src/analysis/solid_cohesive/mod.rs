@@ -9,12 +9,11 @@ mod condensed;
 mod energy;
 mod free_faces;
 mod growing;
-mod load_curve;
-mod path;
-mod settings;
-mod tangent;
 mod work;
 
+use super::cohesive::{
+    Bond, CohesiveState, Condensed, Followed, LoadMeasure, LoadPoint, LoadingSettings, follow, peak_of, pictures,
+};
 use super::record::{GrowthEnd, GrowthEndKind, Observer, Stage};
 use super::solid_growth::SolidGrowthSettings;
 use super::solid_record::SolidResult;
@@ -25,41 +24,16 @@ use crate::math::{Vector, Vector3};
 use crate::model::{CohesiveModel, SolidModel};
 use crate::system::{CollocationSolution, CollocationSystem, TiedFaces, TiedPair};
 use areas::{FaceArea, face_areas};
-use condensed::{Condensed, Parting, TiedBody, UnitFields};
+use condensed::{Parting, TiedBody, UnitFields, condense};
 use free_faces::FreeFaces;
 use growing::Growing;
 pub use growing::{CohesiveSurfaces, GrownSurface};
-use load_curve::{Followed, follow};
-pub use path::CohesiveState;
-use serde::{Deserialize, Serialize};
-pub use settings::LoadingSettings;
 use work::Work;
 
 /// Pairs with less than this share of cohesive area are free.
 const LEAST_SHARE: f64 = 0.1;
 /// Faces that pass on more shear than this, over the strength, must be let slide.
 const STICKS: f64 = 0.05;
-/// Steps with files of their fields, besides the first, that of the peak and the last.
-const PICTURES: usize = 10;
-
-/// A point of the load curve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LoadPoint {
-    /// Factor on all loads and prescribed displacements.
-    pub load_factor: f64,
-    /// Resultant of the loads, or what the prescribed displacements take [stress·length²].
-    pub load: f64,
-    /// Its displacement: the load does its work on it [length].
-    pub displacement: f64,
-    /// Area that has reached its strength [area].
-    pub crack_area: f64,
-    /// Energy dissipated by the cracks [stress·length³].
-    pub dissipated_energy: f64,
-    /// Energy stored in the body and in unbroken bonds [stress·length³].
-    pub elastic_energy: f64,
-    /// Work of the load so far, by the trapezoidal rule [stress·length³].
-    pub external_work: f64,
-}
 
 /// A state of the path with its fields.
 #[derive(Clone, Debug)]
@@ -94,7 +68,7 @@ pub struct LoadingRecord {
 }
 
 /// A pair with its area.
-struct Bond {
+struct TiedBond {
     /// Index among the pairs of the cloud.
     pair: usize,
     area: FaceArea,
@@ -111,7 +85,7 @@ struct Bond {
 /// Those of nodes, shape functions and solver.
 pub fn solid_loading(
     model: &SolidModel,
-    cohesive: &CohesiveModel,
+    cohesive: &CohesiveModel<3>,
     settings: &SolidSettings,
     loading: &LoadingSettings,
     growth: Option<&SolidGrowthSettings>,
@@ -157,7 +131,7 @@ enum Traced {
 /// Loads the surfaces as they are.
 fn traced(
     model: &SolidModel,
-    cohesive: &CohesiveModel,
+    cohesive: &CohesiveModel<3>,
     settings: &SolidSettings,
     loading: &LoadingSettings,
     growing: Option<&Growing<'_>>,
@@ -185,17 +159,21 @@ fn traced(
     let areas: Vec<FaceArea> = bonds.iter().map(|b| b.area).collect();
     let slides = cohesive.law.shear_ratio > 0.0;
     let mut fields = UnitFields::default();
-    let mut condense = |parting| Condensed::new(&body, &placed.collocation, parting, &areas, &free, &mut fields);
+    let mut condense = |parting| condense(&body, &placed.collocation, parting, &areas, &free, &mut fields);
     let mut condensed = condense(if slides { Parting::Full } else { Parting::Normal })?;
-    let mut followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds, observer);
+    let measure = LoadMeasure { resultant: body.work.resultant, prescribed: body.work.prescribed };
+    let of_curve = |b: &TiedBond| Bond { area: b.area.cohesive, is_near_front: b.near_front.is_some() };
+    let of_curve: Vec<Bond> = bonds.iter().map(of_curve).collect();
+    let mut followed = follow(&condensed, measure, &cohesive.law, loading, &of_curve, observer);
     if !slides && followed.most_shear > STICKS * cohesive.law.strength {
         condensed = condense(Parting::Full)?;
-        followed = follow(&condensed, &body.work, &cohesive.law, loading, &bonds, observer);
+        followed = follow(&condensed, measure, &cohesive.law, loading, &of_curve, observer);
     }
     if followed.is_stopped {
         return Ok(Traced::Done(None));
     }
     let Followed { curve, states, mut end, reached, .. } = followed;
+    let reached = reached.and_then(|pair| bonds[pair].near_front);
     if let (Some(strips), Some(_)) = (growing.and_then(Growing::done), reached) {
         let reason = format!("the surfaces have grown by {strips} strips, and the next would be due");
         end = GrowthEnd { kind: GrowthEndKind::StepsDone, reason };
@@ -205,7 +183,7 @@ fn traced(
         let solved = Box::new(Solved::new(placed, solution));
         return Ok(Traced::Reached { solved, place: Some(place), load_factor });
     }
-    let peak = (0..curve.len()).fold(0, |m, k| if curve[k].load.abs() > curve[m].load.abs() { k } else { m });
+    let peak = peak_of(&curve);
     for point in pictures(&curve, peak) {
         observer.stage(Stage::Solve);
         let state = &states[point];
@@ -236,7 +214,7 @@ fn bonds(
     system: &CollocationSystem<3>,
     settings: &SolidSettings,
     growing: Option<&Growing<'_>>,
-) -> (Vec<TiedPair<3>>, Vec<Bond>, FreeFaces) {
+) -> (Vec<TiedPair<3>>, Vec<TiedBond>, FreeFaces) {
     let (mut pairs, mut bonds, mut free) = (vec![], vec![], FreeFaces::default());
     let positions = &placed.collocation.cloud().positions;
     for crack in 0..model.cracks.len() {
@@ -254,30 +232,13 @@ fn bonds(
             {
                 pairs.push(tied);
                 let near_front = growing.filter(|g| g.is_near_front(crack, place)).map(|_| place);
-                bonds.push(Bond { pair, area, near_front });
+                bonds.push(TiedBond { pair, area, near_front });
             } else {
                 free.push(model, crack, nodes, place, normal, area.total);
             }
         }
     }
     (pairs, bonds, free)
-}
-
-/// Points of the curve that get fields: evenly along it, as it is drawn, with the first, the peak and the last.
-fn pictures(curve: &[LoadPoint], peak: usize) -> Vec<usize> {
-    let extent = |get: fn(&LoadPoint) -> f64| curve.iter().map(|p| get(p).abs()).fold(f64::MIN_POSITIVE, f64::max);
-    let (load, displacement) = (extent(|p| p.load), extent(|p| p.displacement));
-    let mut along = vec![0.0];
-    for w in curve.windows(2) {
-        let step = ((w[1].load - w[0].load) / load).hypot((w[1].displacement - w[0].displacement) / displacement);
-        along.push(along[along.len() - 1] + step);
-    }
-    let last = curve.len() - 1;
-    let at = |k: usize| along.partition_point(|s| *s < along[last] * k as f64 / PICTURES as f64).min(last);
-    let mut points: Vec<usize> = (1..PICTURES).map(at).chain([1.min(last), peak, last]).collect();
-    points.sort_unstable();
-    points.dedup();
-    points
 }
 
 fn openings(condensed: &Condensed, tied: &TiedFaces<3>, state: &CohesiveState) -> Vec<(usize, Vector3)> {
@@ -293,7 +254,7 @@ fn tractions(
     model: &SolidModel,
     placed: &Placed,
     condensed: &Condensed,
-    bonds: &[Bond],
+    bonds: &[TiedBond],
     state: &CohesiveState,
 ) -> Vec<Vec<f64>> {
     let all = condensed.tractions(state.load_factor, &state.openings);

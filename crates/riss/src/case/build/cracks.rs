@@ -1,6 +1,7 @@
 //! Crack paths: ends put on the boundary or recognized as tips, everything between them inside the body; joined where they
 //! meet.
 
+use super::cohesive;
 use super::crossings::{Segment, first_contact, folds_back};
 use super::loads::{Tried, try_field};
 use super::outline::vector;
@@ -10,7 +11,7 @@ use crate::crack::meetings::{Meeting, join};
 use crate::crack::{CrackPath, EndKind};
 use crate::geometry::curve::Curve;
 use crate::math::Vector2;
-use crate::model::{CrackFaceLoad, Domain, FieldPoint, ScalarField};
+use crate::model::{CohesiveCrack, CrackFaceLoad, Domain, FieldPoint, ScalarField};
 
 /// An end this close to the boundary, times the size of the body, lies on it.
 const ON_BOUNDARY: f64 = 1e-6;
@@ -27,13 +28,15 @@ const MAX_POINTS: usize = 20_000;
 pub(super) struct Cracks {
     pub paths: Vec<CrackPath>,
     pub face_loads: Vec<CrackFaceLoad>,
+    /// What of each path is cohesive, if anything is.
+    pub cohesive: Vec<Option<CohesiveCrack<2>>>,
     /// Whether any pressure on their faces differs from zero.
     pub acts: bool,
 }
 
 /// All cracks that are sound.
 pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Report) -> Cracks {
-    let mut loads = vec![];
+    let (mut loads, mut all_cohesive) = (vec![], vec![]);
     let mut acts = false;
     let size = domain.aabb().size().norm();
     let mut paths: Vec<(usize, CrackPath)> = vec![];
@@ -49,6 +52,7 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
         let points = shape.as_ref().map_or(&[][..], |s| &s.0);
         let pressure =
             crack.pressure.as_ref().and_then(|p| try_pressure(p, &format!("{key}.pressure"), points, report));
+        let cohesive = cohesive::crack(crack, &key, report);
         let Some((vertices, key)) = shape else { continue };
         let mut builder = Builder { domain, size, key, vertices, ends: [EndKind::Tip; 2] };
         if builder.is_simple(report) && builder.place_ends(report) && builder.is_inside(report) {
@@ -56,10 +60,13 @@ pub(super) fn cracks(list: &[schema::Crack], domain: &Domain, report: &mut Repor
                 acts |= pressure.largest > 0.0;
                 loads.push(CrackFaceLoad { crack: paths.len(), pressure: pressure.field });
             }
-            paths.push((index, CrackPath { name, vertices: builder.vertices, ends: builder.ends }));
+            let notches = cohesive.as_ref().map_or(&[][..], |c| &c.notches);
+            let vertices = cohesive::cut_at_notches(&builder.vertices, notches, builder.tolerance());
+            paths.push((index, CrackPath { name, vertices, ends: builder.ends }));
+            all_cohesive.push(cohesive);
         }
     }
-    Cracks { paths: join_all(paths, size, report), face_loads: loads, acts }
+    Cracks { paths: join_all(paths, size, report), face_loads: loads, cohesive: all_cohesive, acts }
 }
 
 /// A pressure that is finite along a path.

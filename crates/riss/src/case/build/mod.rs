@@ -1,6 +1,8 @@
 //! From what the case says to the checked model; every problem is reported, none is guessed away.
 
 mod boundary;
+pub(super) mod boxes;
+mod cohesive;
 mod cracks;
 mod crossings;
 mod exact;
@@ -14,6 +16,7 @@ mod parts;
 pub(super) mod plausibility;
 pub(super) mod report;
 mod settings;
+pub(super) mod softening;
 mod supports;
 
 use super::abaqus::AbaqusModel;
@@ -21,7 +24,7 @@ use super::document::Document;
 use super::files::Files;
 use super::problem::Problem;
 use super::schema::{self, CaseFile, OutputSettings};
-use crate::analysis::{GrowthSettings, Settings};
+use crate::analysis::{GrowthSettings, LoadingSettings, Settings};
 use crate::material::Elasticity;
 use crate::model::{Domain, Model, RigidMotion, UnitNames};
 use boundary::Boundary;
@@ -37,6 +40,7 @@ pub(super) struct Built {
     pub model: Model,
     pub settings: Settings,
     pub growth: Option<GrowthSettings>,
+    pub loading: Option<LoadingSettings>,
     pub output: OutputSettings,
     pub units: Option<UnitNames>,
     pub notes: Vec<Problem>,
@@ -69,6 +73,7 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
     if let Some(contact) = &file.contact {
         report.positive("contact.penalty", contact.penalty);
     }
+    let (cohesive, loading) = cohesive::cohesive(&file, cracks.cohesive, &mut report).unzip();
     let mut setting = Setting { domain, material, exact, file: &file };
     let loads = loads::loads(&setting, &mut report);
     let supports = supports::supports(&mut setting, &mut report);
@@ -96,6 +101,7 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
         material,
         cracks: cracks.paths,
         crack_face_loads: cracks.face_loads,
+        cohesive,
         contact: file.contact,
         loads: loads.boundary,
         body_force: loads.body_force,
@@ -115,7 +121,7 @@ pub(super) fn build(document: &mut Document, path: &Path, problems: &mut Vec<Pro
         plausibility::check(&file, units, &mut report);
     }
     let (output, notes) = (file.output, report.notes);
-    Some(Built { model, settings, growth: file.growth, output, units: values.units.map(|u| u.names), notes })
+    Some(Built { model, settings, growth: file.growth, loading, output, units: values.units.map(|u| u.names), notes })
 }
 
 /// Name of the file, or of its folder if the file is just called case.toml.

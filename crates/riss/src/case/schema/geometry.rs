@@ -150,6 +150,12 @@ pub(in crate::case) struct Crack {
     /// Pressure on both faces [stress]; positive pushes them apart. In expressions nx and ny are zero.
     #[serde(default)]
     pub pressure: Option<Scalar>,
+    /// Whether the crack obeys [material.cohesive]: it is tied until it reaches its strength.
+    #[serde(default)]
+    pub cohesive: bool,
+    /// Boxes in which a cohesive crack is open and free from the beginning.
+    #[serde(default)]
+    pub notch: Vec<Rectangle>,
 }
 
 /// A circular crack, turned into a polyline.

@@ -7,8 +7,9 @@ pub(in crate::case) use conditions::*;
 pub(in crate::case) use geometry::*;
 
 use crate::adaptivity::AccuracySettings;
-use crate::analysis::{GrowthSettings, Method};
+use crate::analysis::{GrowthSettings, LoadingSettings, Method};
 use crate::approximation::ApproximationSettings;
+use crate::case::build::softening::Cohesive;
 use crate::case::files::FileAccess;
 use crate::fracture::FractureSettings;
 use crate::integration::IntegrationSettings;
@@ -114,6 +115,9 @@ pub(in crate::case) struct CaseFile {
     /// Crack growth; without it, the cracks stay as they are.
     #[serde(default)]
     pub growth: Option<GrowthSettings>,
+    /// How far cohesive cracks are loaded.
+    #[serde(default)]
+    pub loading: Option<LoadingSettings>,
     /// What is written.
     #[serde(default)]
     pub output: OutputSettings,
@@ -135,6 +139,9 @@ pub(in crate::case) struct Material {
     /// Yield stress [stress], positive: with it, riss warns where linear elasticity or the plane state is doubtful.
     #[serde(default)]
     pub yield_stress: Option<f64>,
+    /// Softening of cohesive cracks.
+    #[serde(default)]
+    pub cohesive: Option<Cohesive>,
 }
 
 /// Placement of nodes.

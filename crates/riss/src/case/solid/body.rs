@@ -2,6 +2,7 @@
 
 use super::schema::{SolidBall, SolidBox, SolidCylinder, SolidFile, SolidGeometry, SolidMeshFile};
 use super::stl::read_stl;
+use crate::case::build::boxes::bounds;
 use crate::case::build::report::Report;
 use crate::case::files::Files;
 use crate::case::gmsh::read_gmsh_surface;
@@ -56,17 +57,8 @@ fn closed(mesh: TriangleMesh, angle: f64, key: &str, report: &mut Report) -> Opt
     Surface::closed(mesh, angle.to_radians()).map_err(|e| report.error(key, e.to_string()).key.clone()).ok()
 }
 
-pub(super) fn bounds(b: &SolidBox, key: &str, report: &mut Report) -> Option<Aabb<3>> {
-    let (lower, upper) = (Vector3::from(b.lower), Vector3::from(b.upper));
-    if (0..3).any(|d| upper[d] <= lower[d]) {
-        report.error(format!("{key}.upper"), "every coordinate must be greater than that of `lower`");
-        return None;
-    }
-    Some(Aabb { lower, upper })
-}
-
 fn boxed(b: &SolidBox, key: &str, report: &mut Report) -> Option<TriangleMesh> {
-    bounds(b, key, report).map(cuboid)
+    bounds(b.lower, b.upper, key, report).map(cuboid)
 }
 
 fn round(c: &SolidCylinder, key: &str, names: [&str; 3], report: &mut Report) -> Option<TriangleMesh> {

@@ -15,7 +15,7 @@ pub(super) struct Cracks {
     pub names: Vec<String>,
     pub surfaces: Vec<CrackSurface>,
     pub faces: Vec<VectorField<3>>,
-    pub cohesive: Vec<Option<CohesiveCrack>>,
+    pub cohesive: Vec<Option<CohesiveCrack<3>>>,
     /// Whether one is under pressure.
     pub acts: bool,
 }

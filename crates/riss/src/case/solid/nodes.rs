@@ -1,9 +1,9 @@
 //! Spacing of nodes and the other numerical choices for a solid.
 
-use super::body::bounds;
 use super::cracks::Cracks;
 use super::schema::{Finer, SolidFile};
 use crate::analysis::SolidSettings;
+use crate::case::build::boxes::bounds;
 use crate::case::build::report::Report;
 use crate::crack::{CrackFront, CrackSurface};
 use crate::geometry::surface::Surface;
@@ -95,7 +95,7 @@ fn finer_regions(finer: &Finer, key: &str, body: &Surface, report: &mut Report) 
             }
             triangles.iter().map(|t| Region::Triangle(body.corners(*t))).collect()
         }
-        (None, Some(b), None) => vec![Region::Box(bounds(b, &format!("{key}.box"), report)?)],
+        (None, Some(b), None) => vec![Region::Box(bounds(b.lower, b.upper, &format!("{key}.box"), report)?)],
         (None, None, Some(b)) => {
             report.positive(format!("{key}.ball.radius"), b.radius).then_some(())?;
             vec![Region::Ball { center: Vector3::from(b.center), radius: b.radius }]

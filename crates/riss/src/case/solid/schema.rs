@@ -1,9 +1,9 @@
 //! What the case file of a solid may say. Shape only: ranges and sense are checked in the files beside.
 
-use super::cohesive::SolidCohesive;
 use super::exact::SolidExact;
 use super::growth::SolidGrowth;
 use crate::analysis::LoadingSettings;
+use crate::case::build::softening::Cohesive;
 use crate::case::files::FileAccess;
 use crate::case::schema::{Names, RigidMotion, Scalar};
 use crate::nodes::solid::NodesOnFronts;
@@ -109,7 +109,7 @@ pub(in crate::case) struct SolidMaterial {
     pub yield_stress: Option<f64>,
     /// Softening of cohesive cracks.
     #[serde(default)]
-    pub cohesive: Option<SolidCohesive>,
+    pub cohesive: Option<Cohesive>,
 }
 
 /// The body, one of these.

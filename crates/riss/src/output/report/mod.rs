@@ -4,6 +4,8 @@
 //! it, for solids [`solid_scene`] with `boundary`; then this file, which puts page, script and data together. What the user wrote is escaped, always.
 
 mod boundary;
+pub(super) mod chart;
+pub(super) mod loading;
 mod quantize;
 pub mod solid_scene;
 mod step_fields;
@@ -14,8 +16,9 @@ use super::results::Results;
 use super::run_writer::read_results;
 use super::solid_files::read_solid_results;
 use super::solid_report::solid_report;
-use super::whole_file::write_whole;
+use super::whole_file::{read_if_there, write_whole};
 use crate::analysis::Fields;
+use loading::loading_section;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::fs;
@@ -156,11 +159,7 @@ pub fn describe_run(dir: &Path, source: &RunSource) -> io::Result<()> {
 
 /// What was run in a folder, if it is told there.
 fn read_source(dir: &Path) -> io::Result<Option<RunSource>> {
-    match fs::read(dir.join(SOURCE_FILE)) {
-        Ok(text) => Ok(Some(serde_json::from_slice(&text)?)),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(e),
-    }
+    read_if_there(&dir.join(SOURCE_FILE))
 }
 
 /// Names of the files that the report is made of beside those of `step` and `results.json`.
@@ -198,6 +197,7 @@ pub(super) fn report(dir: &Path, results: &Results) -> io::Result<String> {
     Ok(fill(PAGE, |mark| match mark {
         "title" => html(&results.case),
         "style" => STYLE.concat(),
+        "load curve" => loading_section(results.loading.as_ref(), &results.load_curve),
         "curve library" => CURVE_LIBRARY.concat(),
         "script" => SCRIPT.concat(),
         "data" => std::mem::take(&mut data),
@@ -329,7 +329,7 @@ mod tests {
             marks.push(mark.to_string());
             String::new()
         });
-        assert_eq!(marks, ["title", "style", "title", "data", "curve library", "script"]);
+        assert_eq!(marks, ["title", "style", "title", "load curve", "data", "curve library", "script"]);
         assert!(!page.contains("{{"));
     }
 }

@@ -5,19 +5,22 @@
 //! tangent of the path take its place [Riks1979].
 
 use super::condensed::Condensed;
+use super::events::Event;
 use super::tangent::Tangent;
-use crate::material::{Cohesion, CohesiveLaw};
+use crate::material::{Branch, Cohesion, CohesiveLaw};
 use crate::system::dense_lu::DenseLu;
 use serde::{Deserialize, Serialize};
 
 /// Pairs this near to their strength open together.
 const TOGETHER: f64 = 1e-6;
-/// How far above its strength a pair may be in a converged step.
-const EXCESS: f64 = 1e-7;
 /// Largest residual of tractions over the strength.
 const RESIDUAL: f64 = 1e-9;
 /// How far from its length a step along the tangent may end, over that length.
 const OFF_LENGTH: f64 = 1e-6;
+/// Stiffness of faces that slide freely, over `f_t²/G_f`.
+const HOLD: f64 = 1e-6;
+/// How far from its branch a pair may be in a converged step, over `G_f/f_t`.
+const OFF_BRANCH: f64 = 1e-6;
 /// Longest step: largest change of an opening over `G_f/f_t`, and of the load factor over itself.
 const LONGEST: f64 = 0.05;
 /// A step shorter than this is given up.
@@ -46,19 +49,19 @@ pub struct CohesiveState {
 
 /// What makes a step a step.
 enum Target<'a> {
-    /// A pair reaches its strength.
-    Reaches(usize),
+    /// Something happens to a pair.
+    Event(Event),
     /// The state lies in the plane across a tangent, at the predicted place.
     Across { tangent: &'a Tangent, from: &'a CohesiveState, length: f64 },
 }
 
 /// Follows the path.
-pub(super) struct Path<'a> {
+pub(in crate::analysis) struct Path<'a> {
     pub(super) condensed: &'a Condensed,
     pub(super) law: &'a CohesiveLaw,
     pub state: CohesiveState,
     pub(super) tangent: Option<Tangent>,
-    /// Pairs that the last step opened.
+    /// Pairs that came to the softening curve in the last step: for the first time, or back on their secants.
     pub(super) opened: Vec<usize>,
     /// First critical load factor.
     first: f64,
@@ -104,25 +107,28 @@ impl<'a> Path<'a> {
         let size = self.size(&tangent);
         let mut length = self.longest / size;
         loop {
-            let (mut candidate, mut shortened) = (self.next_pair(&tangent, length), false);
+            let (mut candidate, mut shortened) = (self.next_event(&tangent, length), false);
             for _ in 0..TRIALS {
-                let reach = candidate.map_or(length, |c: (usize, f64)| c.1);
+                let reach = candidate.map_or(length, |c: (Event, f64)| c.1);
                 let mut trial = self.predicted(&tangent, reach);
                 let target = match candidate {
-                    Some((pair, _)) => Target::Reaches(pair),
+                    Some((event, _)) => Target::Event(event),
                     None => Target::Across { tangent: &tangent, from: &self.state, length: reach },
                 };
-                if !self.converge(&mut trial, &target) || !self.is_ahead(&tangent, &trial, length.max(reach)) {
+                if !self.converge(&mut trial, &tangent.unloads, &target)
+                    || !self.is_ahead(&tangent, &trial, length.max(reach))
+                    || !self.keeps_branches(&trial, &tangent.unloads)
+                {
                     break;
                 }
-                match self.most_exceeded(&trial) {
-                    Some(pair) if candidate.is_some_and(|c| c.0 == pair) => break,
-                    Some(pair) => {
-                        candidate = Some((pair, reach));
+                match self.missed_event(&trial, &tangent.unloads) {
+                    Some(event) if candidate.is_some_and(|c| c.0 == event) => break,
+                    Some(event) => {
+                        candidate = Some((event, reach));
                         shortened = true;
                     }
                     None => {
-                        self.accept(trial, tangent);
+                        self.accept(trial, tangent, candidate.map(|c| c.0));
                         self.longest = if shortened { self.longest } else { (1.5 * self.longest).min(LONGEST) };
                         return true;
                     }
@@ -136,25 +142,38 @@ impl<'a> Path<'a> {
         }
     }
 
+    /// Effective opening of a pair.
+    pub(super) fn effective(&self, pair: usize, openings: &[f64]) -> f64 {
+        self.law.effective(self.condensed.opening_of(pair, openings))
+    }
+
     /// What changes of the load factor are measured by.
     pub(super) fn load_unit(&self) -> f64 {
         self.state.load_factor.abs().max(self.first)
     }
 
     /// How far a pair is exhausted.
-    fn exhaustion(&self, pair: usize, tractions: &[f64]) -> f64 {
+    pub(super) fn exhaustion(&self, pair: usize, tractions: &[f64]) -> f64 {
         self.law.exhaustion(self.condensed.of_pair(pair, tractions))
     }
 
     /// Traction of an opened pair and its derivative.
-    fn cohesion(&self, pair: usize, state: &CohesiveState, history: f64) -> Cohesion {
+    fn cohesion(&self, pair: usize, state: &CohesiveState, unloads: bool) -> Cohesion {
         let opening = self.condensed.opening_of(pair, &state.openings);
-        let mut found = self.law.cohesion(opening, history);
-        let (effective, largest) = (self.law.effective(opening), history.max(self.law.first_opening()));
-        let [t, slope, _] = self.law.softening(effective.max(largest));
+        let largest = state.history[pair].max(self.law.first_opening());
+        let branch = if unloads { Branch::Secant(largest) } else { Branch::Softening };
+        let mut found = self.law.cohesion_on(opening, branch);
+        let at = if unloads { largest } else { self.law.effective(opening) };
+        let [t, slope, _] = self.law.softening(at);
         for (k, shear) in state.shear[pair].into_iter().enumerate() {
             found.traction[k + 1] += shear * t / self.law.strength;
-            if effective >= largest {
+            if self.law.shear_ratio == 0.0 {
+                // Two parts that nothing else holds beside each other stay where they are.
+                let hold = HOLD * self.law.strength / self.law.opening_scale();
+                found.traction[k + 1] += hold * opening[k + 1];
+                found.tangent[k + 1][k + 1] += hold;
+            }
+            if !unloads {
                 found.tangent[k + 1][0] += shear * slope / self.law.strength;
             }
         }
@@ -169,12 +188,12 @@ impl<'a> Path<'a> {
     }
 
     /// Residuals of the opened pairs in their columns' order, and the tractions of all.
-    fn residuals(&self, unknown: &[(usize, usize)], trial: &CohesiveState) -> (Vec<f64>, Vec<f64>) {
+    fn residuals(&self, unknown: &[(usize, usize)], trial: &CohesiveState, unloads: &[bool]) -> (Vec<f64>, Vec<f64>) {
         let c = self.condensed;
         let tractions = c.tractions(trial.load_factor, &trial.openings);
         let own = |(pair, column): &(usize, usize)| {
             let k = column - c.columns[*pair];
-            let cohesion = self.cohesion(*pair, trial, trial.history[*pair]);
+            let cohesion = self.cohesion(*pair, trial, unloads[*pair]);
             tractions[c.rows[*pair] + k] - cohesion.traction[k]
         };
         (unknown.iter().map(own).collect(), tractions)
@@ -182,19 +201,19 @@ impl<'a> Path<'a> {
 
     /// The Jacobian of the residuals, with a last row.
     ///
-    /// - `history`: of each pair, which decides whether it loads
+    /// - `unloads`: whether each pair follows its secant
     /// - `last`: coefficients of the openings, then that of the load factor
     pub(super) fn factored(
         &self,
         unknown: &[(usize, usize)],
         trial: &CohesiveState,
-        history: &[f64],
+        unloads: &[bool],
         last: &[f64],
     ) -> DenseLu {
         let c = self.condensed;
         let n = unknown.len();
         let cohesion: Vec<_> =
-            unknown.iter().map(|(pair, _)| self.cohesion(*pair, trial, history[*pair]).tangent).collect();
+            unknown.iter().map(|(pair, _)| self.cohesion(*pair, trial, unloads[*pair]).tangent).collect();
         DenseLu::new(n + 1, |i, j| {
             if i == n {
                 return last[j];
@@ -211,15 +230,15 @@ impl<'a> Path<'a> {
         })
     }
 
-    /// Newton's method; the trial is a solution if the answer is yes.
-    fn converge(&self, trial: &mut CohesiveState, target: &Target<'_>) -> bool {
+    /// Newton's method on given branches, so that it meets no kinks; the trial is a solution if the answer is yes.
+    fn converge(&self, trial: &mut CohesiveState, unloads: &[bool], target: &Target<'_>) -> bool {
         let unknown = self.open_columns();
         let allowed = match target {
-            Target::Reaches(_) => RESIDUAL,
+            Target::Event(_) => RESIDUAL,
             Target::Across { .. } => OFF_LENGTH,
         };
         for _ in 0..ITERATIONS {
-            let (mut right, tractions) = self.residuals(&unknown, trial);
+            let (mut right, tractions) = self.residuals(&unknown, trial, unloads);
             let (last, excess) = self.target_row(&unknown, trial, &tractions, target);
             let largest = right.iter().fold(0.0, |m: f64, r| m.max(r.abs())) / self.law.strength;
             if !largest.is_finite() {
@@ -229,7 +248,7 @@ impl<'a> Path<'a> {
                 return true;
             }
             right.push(excess);
-            self.factored(&unknown, trial, &trial.history, &last).solve_in_place(&mut right);
+            self.factored(&unknown, trial, unloads, &last).solve_in_place(&mut right);
             if right.iter().any(|v| !v.is_finite()) {
                 return false;
             }
@@ -249,20 +268,8 @@ impl<'a> Path<'a> {
         tractions: &[f64],
         target: &Target<'_>,
     ) -> (Vec<f64>, f64) {
-        let c = self.condensed;
         match target {
-            Target::Reaches(pair) => {
-                let own = c.of_pair(*pair, tractions);
-                let gradient = self.law.exhaustion_gradient(own);
-                let rows = c.rows[*pair]..c.rows[*pair + 1];
-                let along = |of_row: &dyn Fn(usize) -> f64| -> f64 {
-                    rows.clone().enumerate().map(|(k, row)| gradient[k] * of_row(row)).sum()
-                };
-                let mut last: Vec<f64> =
-                    unknown.iter().map(|(_, column)| along(&|row| c.by_opening(row, *column))).collect();
-                last.push(along(&|row| c.by_load(row)));
-                (last, self.law.exhaustion(own) - 1.0)
-            }
+            Target::Event(event) => self.event_row(*event, unknown, trial, tractions),
             Target::Across { tangent, from, length } => {
                 let (scale, first) = (self.law.opening_scale(), self.load_unit());
                 let square = |v: f64, unit: f64| (v / unit) * (v / unit);
@@ -303,24 +310,28 @@ impl<'a> Path<'a> {
         along >= 0.0 && largest <= OVERSHOOT * length * self.size(tangent)
     }
 
-    /// The tied pair that is furthest above its strength.
-    fn most_exceeded(&self, trial: &CohesiveState) -> Option<usize> {
-        let tractions = self.condensed.tractions(trial.load_factor, &trial.openings);
-        let tied = (0..self.condensed.n_pairs()).filter(|k| !self.state.is_open[*k]);
-        let (pair, most) = tied.map(|k| (k, self.exhaustion(k, &tractions))).max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (most > 1.0 + EXCESS).then_some(pair)
+    /// Whether pairs that soften have opened.
+    fn keeps_branches(&self, trial: &CohesiveState, unloads: &[bool]) -> bool {
+        let allowed = OFF_BRANCH * self.law.opening_scale();
+        let softens = |k: &usize| self.state.is_open[*k] && !unloads[*k];
+        (0..self.condensed.n_pairs())
+            .filter(softens)
+            .all(|k| self.effective(k, &trial.openings) >= self.state.history[k] - allowed)
     }
 
-    fn accept(&mut self, trial: CohesiveState, tangent: Tangent) {
+    fn accept(&mut self, trial: CohesiveState, tangent: Tangent, event: Option<Event>) {
         self.state = trial;
-        for pair in 0..self.condensed.n_pairs() {
-            if self.state.is_open[pair] {
-                let effective = self.law.effective(self.condensed.opening_of(pair, &self.state.openings));
-                self.state.history[pair] = self.state.history[pair].max(effective);
-            }
+        for pair in (0..self.condensed.n_pairs()).filter(|k| self.state.is_open[*k]) {
+            // Those that soften stay on the curve, where a step has closed one by next to nothing.
+            let returns = event == Some(Event::Returns(pair));
+            let before = if tangent.unloads[pair] && !returns { self.state.history[pair] } else { 0.0 };
+            self.state.history[pair] = self.effective(pair, &self.state.openings).max(before);
         }
         self.tangent = Some(tangent);
         self.open_exhausted();
+        if let Some(Event::Returns(pair)) = event {
+            self.opened.push(pair);
+        }
     }
 
     /// Opens the pairs at their strength.

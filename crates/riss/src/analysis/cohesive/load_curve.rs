@@ -2,32 +2,70 @@
 
 use super::condensed::Condensed;
 use super::path::{CohesiveState, Path};
-use super::work::Work;
-use super::{Bond, LoadPoint, LoadingSettings};
+use super::settings::LoadingSettings;
 use crate::analysis::record::{GrowthEnd, GrowthEndKind, Observer};
 use crate::material::CohesiveLaw;
-use crate::math::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Pairs that are open by less than this, over `G_f/f_t`, call for no growth: the first to open may do so by noise.
 const OPENED: f64 = 0.01;
+/// Steps with fields, besides the first, that of the peak and the last.
+const PICTURES: usize = 10;
+
+/// A point of the load curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LoadPoint {
+    /// Factor on all loads and prescribed displacements.
+    pub load_factor: f64,
+    /// Resultant of the loads, or what the prescribed displacements take [stress·length²].
+    pub load: f64,
+    /// Its displacement: the load does its work on it [length].
+    pub displacement: f64,
+    /// Area that has reached its strength [area].
+    pub crack_area: f64,
+    /// Energy dissipated by the cracks [stress·length³].
+    pub dissipated_energy: f64,
+    /// Energy stored in the body and in unbroken bonds [stress·length³].
+    pub elastic_energy: f64,
+    /// Work of the load so far, by the trapezoidal rule [stress·length³].
+    pub external_work: f64,
+}
+
+/// What load and displacement of a body are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::analysis) struct LoadMeasure {
+    /// Resultant of the loads [stress·length²].
+    pub resultant: f64,
+    /// Largest prescribed displacement [length].
+    pub prescribed: f64,
+}
+
+/// What a pair is for the load curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::analysis) struct Bond {
+    /// Area of crack that it stands for [area].
+    pub area: f64,
+    /// Whether the crack has to grow before it opens.
+    pub is_near_front: bool,
+}
 
 /// A path with its states.
-pub(super) struct Followed {
+pub(in crate::analysis) struct Followed {
     pub curve: Vec<LoadPoint>,
     pub states: Vec<CohesiveState>,
     pub end: GrowthEnd,
     /// Largest shear between opened faces that cannot slide [stress].
     pub most_shear: f64,
-    /// Where the path ends because a front has to grow.
-    pub reached: Option<Vector3>,
+    /// The pair at which the path ends because a front has to grow.
+    pub reached: Option<usize>,
     /// Whether the observer ended it.
     pub is_stopped: bool,
 }
 
 /// Follows the path until it ends, a front has to grow or the observer stops it.
-pub(super) fn follow(
+pub(in crate::analysis) fn follow(
     condensed: &Condensed,
-    work: &Work,
+    measure: LoadMeasure,
     law: &CohesiveLaw,
     loading: &LoadingSettings,
     bonds: &[Bond],
@@ -54,7 +92,7 @@ pub(super) fn follow(
             + 0.5 * (path.state.load_factor + before.load_factor) * (now[0] - done[0])
             + 0.5 * (now[1] + done[1]) * rise;
         done = now;
-        let mut point = point(&path.state, condensed, work, law, bonds, now);
+        let mut point = point(&path.state, condensed, measure, law, bonds, now);
         point.external_work = external_work;
         followed.curve.push(point);
         followed.states.push(path.state.clone());
@@ -69,7 +107,7 @@ pub(super) fn follow(
         }
         greatest = greatest.max(point.load.abs());
         let opens = |k: &usize| path.state.is_open[*k] && path.state.history[*k] >= OPENED * law.opening_scale();
-        followed.reached = (0..bonds.len()).filter(opens).find_map(|k| bonds[k].near_front);
+        followed.reached = (0..bonds.len()).filter(opens).find(|k| bonds[*k].is_near_front);
         if followed.reached.is_some() {
             break;
         }
@@ -101,23 +139,45 @@ pub(super) fn follow(
 fn point(
     state: &CohesiveState,
     condensed: &Condensed,
-    work: &Work,
+    measure: LoadMeasure,
     law: &CohesiveLaw,
     bonds: &[Bond],
     conjugates: [f64; 2],
 ) -> LoadPoint {
     let [by_loads, by_reactions] = conjugates;
-    let (load, displacement) = if work.prescribed > 0.0 {
-        (by_reactions / work.prescribed, state.load_factor * work.prescribed)
+    let (load, displacement) = if measure.prescribed > 0.0 {
+        (by_reactions / measure.prescribed, state.load_factor * measure.prescribed)
     } else {
-        (state.load_factor * work.resultant, by_loads / work.resultant)
+        (state.load_factor * measure.resultant, by_loads / measure.resultant)
     };
     let mut point = LoadPoint { load_factor: state.load_factor, load, displacement, ..LoadPoint::default() };
     for (k, bond) in bonds.iter().enumerate().filter(|(k, _)| state.is_open[*k]) {
-        point.crack_area += bond.area.cohesive;
+        point.crack_area += bond.area;
         point.dissipated_energy += condensed.areas[k] * law.dissipated(state.history[k]);
     }
     // That of the body, and what bonds give back when they unload to the origin.
     point.elastic_energy = 0.5 * state.load_factor * (by_loads + by_reactions);
     point
+}
+
+/// Points of the curve that get fields: evenly along it, as it is drawn, with the first, the peak and the last.
+pub(in crate::analysis) fn pictures(curve: &[LoadPoint], peak: usize) -> Vec<usize> {
+    let extent = |get: fn(&LoadPoint) -> f64| curve.iter().map(|p| get(p).abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let (load, displacement) = (extent(|p| p.load), extent(|p| p.displacement));
+    let mut along = vec![0.0];
+    for w in curve.windows(2) {
+        let step = ((w[1].load - w[0].load) / load).hypot((w[1].displacement - w[0].displacement) / displacement);
+        along.push(along[along.len() - 1] + step);
+    }
+    let last = curve.len() - 1;
+    let at = |k: usize| along.partition_point(|s| *s < along[last] * k as f64 / PICTURES as f64).min(last);
+    let mut points: Vec<usize> = (1..PICTURES).map(at).chain([1.min(last), peak, last]).collect();
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
+/// Index of the greatest load.
+pub(in crate::analysis) fn peak_of(curve: &[LoadPoint]) -> usize {
+    (0..curve.len()).fold(0, |m, k| if curve[k].load.abs() > curve[m].load.abs() { k } else { m })
 }

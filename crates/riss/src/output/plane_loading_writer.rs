@@ -1,0 +1,88 @@
+//! Writes what a plane body with cohesive cracks does under load: the states with fields as they come, then the curve.
+
+use super::load_curve::{LOAD_CURVE_FILE, LoadingResults, load_curve, table};
+use super::report::RunSource;
+use super::run_writer::{RunWriter, write_file};
+use super::whole_file::{read_if_there, remove_if_there, write_whole};
+use super::{OutputOptions, RunInfo};
+use crate::analysis::{CohesivePaths, LoadPoint, PlaneLoadingRecord, StaticResult};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Where the cracks stand from which a run can go on.
+const PATHS_FILE: &str = "restart/paths.json";
+
+/// The folder of a run with cohesive cracks in the plane.
+#[derive(Debug)]
+pub struct PlaneLoadingWriter {
+    dir: PathBuf,
+    writer: RunWriter,
+}
+
+/// The cracks that an earlier run in a folder had grown; none if it had not come so far.
+///
+/// # Errors
+/// What the system says; `InvalidData` if the file is none of ours.
+pub fn grown_paths(dir: &Path) -> io::Result<Option<CohesivePaths>> {
+    read_if_there(&dir.join(PATHS_FILE))
+}
+
+impl PlaneLoadingWriter {
+    /// Starts anew in `dir`, which is made if needed.
+    ///
+    /// - `source`: what is run, for the report
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn new(dir: &Path, options: OutputOptions, source: &RunSource) -> io::Result<Self> {
+        let writer = RunWriter::new(dir, options)?;
+        writer.describe(source)?;
+        remove_if_there(&dir.join(PATHS_FILE))?;
+        remove_if_there(&dir.join(LOAD_CURVE_FILE))?;
+        Ok(Self { dir: dir.into(), writer })
+    }
+
+    /// Writes the cracks that have grown, from which another run can go on.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_paths(&self, paths: &CohesivePaths) -> io::Result<()> {
+        write_file(&self.dir, PATHS_FILE, &serde_json::to_vec(paths)?)
+    }
+
+    /// Writes the load curve as far as it is known, so that a run that is killed leaves it.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_curve(&self, curve: &[LoadPoint]) -> io::Result<()> {
+        write_whole(&self.dir.join(LOAD_CURVE_FILE), &table(&load_curve(curve))?)
+    }
+
+    /// Writes the fields of a state.
+    ///
+    /// - `info`: of the run so far
+    /// - `stage_time_s`: of this state
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write_step(
+        &mut self,
+        info: &RunInfo,
+        result: &StaticResult,
+        stage_time_s: &[(String, f64)],
+    ) -> io::Result<()> {
+        self.writer.write_step(info, result, stage_time_s, None).map(drop)
+    }
+
+    /// Writes the curve and what became of the run; returns the paths, `results.json` last.
+    ///
+    /// # Errors
+    /// What the system says; `NotFound` if no state was written.
+    pub fn finish(&self, info: &RunInfo, record: &PlaneLoadingRecord) -> io::Result<Vec<PathBuf>> {
+        let curve = load_curve(&record.curve);
+        let none = || io::Error::new(io::ErrorKind::NotFound, "the load curve has no peak");
+        let loading = LoadingResults::new(&curve, record.peak, &record.end).ok_or_else(none)?;
+        let loading = LoadingResults { paths: record.paths.clone(), ..loading };
+        self.writer.write_loading(info, loading, curve)
+    }
+}
