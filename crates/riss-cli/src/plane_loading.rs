@@ -8,11 +8,11 @@ use crate::run::RunArguments;
 use crate::table::units_line;
 use crate::{BAD_CASE, DONE, STOPPED, interrupt};
 use riss::analysis::{
-    CohesivePaths, GrowthEndKind, GrowthState, LoadPoint, LoadingSettings, Observer, PlaneLoadingRecord, Stage,
-    StaticResult, Warning, plane_loading,
+    GrowthEndKind, GrowthState, LoadPoint, LoadingSettings, Observer, PlaneLoadingRecord, Stage, StaticResult, Warning,
+    plane_loading,
 };
 use riss::case::Case;
-use riss::output::{PlaneLoadingWriter, RESULTS_FILE, RunStatus, grown_paths};
+use riss::output::{PlaneLoadingWriter, RESULTS_FILE, RunStatus, grown_ways};
 use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub fn load(
 ) -> u8 {
     let from = known.map_or(Ok(None), |known| {
         known.unchanged(case, dir)?;
-        grown_paths(dir).map_err(|e| format!("the cracks in {} cannot be gone on from: {e}", dir.display()))
+        grown_ways(dir).map_err(|e| format!("the growth in {} cannot be gone on from: {e}", dir.display()))
     });
     let from = match from {
         Ok(from) => from,
@@ -41,7 +41,7 @@ pub fn load(
         Ok(Some(followed)) => followed,
         Ok(None) if case.growth.is_some() => {
             return crate::fail(&format!(
-                "stopped; load_curve.csv has what was found until then, and riss run --resume {} goes on with the cracks as they have grown",
+                "stopped; load_curve.csv has what was found until then, and riss run --resume {} goes on",
                 dir.display()
             ));
         }
@@ -64,14 +64,14 @@ pub fn load(
 
 /// Loads a plane body and writes what it does; none if Ctrl-C came before the end.
 ///
-/// - `from`: cracks that an earlier run had grown, to go on with
+/// - `from`: where growth goes on that an earlier run began
 ///
 /// # Errors
 /// Why there are no results.
 pub fn follow(
     case: &Case,
     loading: &LoadingSettings,
-    from: Option<CohesivePaths>,
+    from: Option<GrowthState>,
     dir: &Path,
     progress: Progress,
 ) -> Result<Option<(PlaneLoadingRecord, Vec<PathBuf>)>, String> {
@@ -82,7 +82,7 @@ pub fn follow(
         Resumed::keep(&case.path, &case.text, &case.overrides, dir).map_err(|e| unwritten(&e))?;
     }
     if let Some(from) = &from {
-        writer.write_paths(from).map_err(|e| unwritten(&e))?;
+        writer.write_ways(from).map_err(|e| unwritten(&e))?;
     }
     let mut watch = Watch { case, writer, progress, error: None, pace: Pace::default() };
     let outcome = plane_loading(&case.model, &case.settings, loading, case.growth.as_ref(), from, &mut watch);
@@ -140,8 +140,8 @@ impl Observer for Watch<'_> {
         self.after(written)
     }
 
-    fn paths_grown(&mut self, paths: &CohesivePaths) -> ControlFlow<()> {
-        let written = self.writer.write_paths(paths);
+    fn ways_grown(&mut self, state: &GrowthState) -> ControlFlow<()> {
+        let written = self.writer.write_ways(state);
         self.after(written)
     }
 

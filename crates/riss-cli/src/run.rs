@@ -150,7 +150,7 @@ fn analyze(arguments: &RunArguments, case: &Case, known: Option<Resumed>, dir: &
         return match (&case.growth, &known) {
             (None, Some(_)) => refuse("the case has no [growth]: there is nothing to go on with"),
             (Some(_), Some(_)) if arguments.from_step.is_some() => {
-                refuse("runs with cohesive cracks go on with the last cracks, not from a step: leave out --from-step")
+                refuse("runs with cohesive cracks go on where they were, not from a step: leave out --from-step")
             }
             (_, known) => plane_loading::load(arguments, case, loading, known.as_ref(), dir, progress),
         };

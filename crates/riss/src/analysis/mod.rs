@@ -34,7 +34,7 @@ pub use linear_static::{discretize, linear_static};
 pub use memory::RunSize;
 pub use method::Method;
 pub use node_function::{NodeFunction, nearest_node, sample_node_function};
-pub use plane_cohesive::{CohesivePaths, GrownPath, PlaneLoadingRecord, plane_loading};
+pub use plane_cohesive::{PlaneLoadingRecord, plane_loading};
 pub use record::*;
 pub use refinement::{Refined, solve_refined};
 pub use settings::Settings;

@@ -2,7 +2,6 @@
 
 use super::cohesive::LoadPoint;
 use super::crack_growth::GrowthState;
-use super::plane_cohesive::CohesivePaths;
 use super::solid_cohesive::{CohesiveSurfaces, LoadingStep};
 use super::solid_growth::{SolidGrowthState, SolidStep};
 use super::warnings::Warning;
@@ -68,8 +67,9 @@ pub trait Observer {
     fn surfaces_grown(&mut self, _surfaces: &CohesiveSurfaces) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
-    /// Cohesive cracks of a plane body have grown, and are loaded from rest next. A break ends the analysis there.
-    fn paths_grown(&mut self, _paths: &CohesivePaths) -> ControlFlow<()> {
+    /// A step of the growth of cohesive cracks in the plane, which come to their load later, began with this state. A break
+    /// ends the analysis there.
+    fn ways_grown(&mut self, _state: &GrowthState) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
     /// A state of a loaded solid with cohesive cracks is complete with its fields. A break ends the analysis there.

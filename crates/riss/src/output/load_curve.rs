@@ -1,7 +1,7 @@
 //! The load curve of cohesive cracks, in results and as a table.
 
 use super::results::finite;
-use crate::analysis::{GrownPath, GrownSurface, GrowthEnd, LoadPoint};
+use crate::analysis::{GrownSurface, GrowthEnd, LoadPoint};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -22,9 +22,6 @@ pub struct LoadingResults {
     /// Surfaces of a solid from first to last, if they grow.
     #[serde(default)]
     pub surfaces: Vec<GrownSurface>,
-    /// Paths in the plane from first to last, if they grow.
-    #[serde(default)]
-    pub paths: Vec<GrownPath>,
 }
 
 impl LoadingResults {
@@ -32,7 +29,7 @@ impl LoadingResults {
     pub(super) fn new(curve: &[LoadCurvePoint], peak: usize, end: &GrowthEnd) -> Option<Self> {
         let peak = curve.get(peak)?.clone();
         let dissipated_energy = curve.last().and_then(|p| p.dissipated_energy);
-        Some(Self { peak, dissipated_energy, end: end.clone(), surfaces: vec![], paths: vec![] })
+        Some(Self { peak, dissipated_energy, end: end.clone(), surfaces: vec![] })
     }
 }
 

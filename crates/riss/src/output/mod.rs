@@ -42,7 +42,7 @@ pub use field_picture::{FieldQuantity, write_field_picture};
 pub use load_curve::LOAD_CURVE_FILE;
 pub use loading_writer::{LoadingWriter, grown_surfaces};
 pub use model_picture::write_model_picture;
-pub use plane_loading_writer::{PlaneLoadingWriter, grown_paths};
+pub use plane_loading_writer::{PlaneLoadingWriter, grown_ways};
 pub use report::{REPORT_FILE, RunSource, describe_run, write_report};
 pub use results::{Results, RunStatus, results_json, results_schema};
 pub use run_writer::{RunWriter, read_results, restart_state, write_file};

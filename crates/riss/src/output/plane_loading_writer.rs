@@ -5,12 +5,12 @@ use super::report::RunSource;
 use super::run_writer::{RunWriter, write_file};
 use super::whole_file::{read_if_there, remove_if_there, write_whole};
 use super::{OutputOptions, RunInfo};
-use crate::analysis::{CohesivePaths, LoadPoint, PlaneLoadingRecord, StaticResult};
+use crate::analysis::{GrowthState, LoadPoint, PlaneLoadingRecord, StaticResult};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Where the cracks stand from which a run can go on.
-const PATHS_FILE: &str = "restart/paths.json";
+/// Where growth stands from which a run can go on.
+const WAYS_FILE: &str = "restart/ways.json";
 
 /// The folder of a run with cohesive cracks in the plane.
 #[derive(Debug)]
@@ -19,12 +19,12 @@ pub struct PlaneLoadingWriter {
     writer: RunWriter,
 }
 
-/// The cracks that an earlier run in a folder had grown; none if it had not come so far.
+/// Where the growth of an earlier run in a folder stands; none if it had not come so far.
 ///
 /// # Errors
 /// What the system says; `InvalidData` if the file is none of ours.
-pub fn grown_paths(dir: &Path) -> io::Result<Option<CohesivePaths>> {
-    read_if_there(&dir.join(PATHS_FILE))
+pub fn grown_ways(dir: &Path) -> io::Result<Option<GrowthState>> {
+    read_if_there(&dir.join(WAYS_FILE))
 }
 
 impl PlaneLoadingWriter {
@@ -37,17 +37,17 @@ impl PlaneLoadingWriter {
     pub fn new(dir: &Path, options: OutputOptions, source: &RunSource) -> io::Result<Self> {
         let writer = RunWriter::new(dir, options)?;
         writer.describe(source)?;
-        remove_if_there(&dir.join(PATHS_FILE))?;
+        remove_if_there(&dir.join(WAYS_FILE))?;
         remove_if_there(&dir.join(LOAD_CURVE_FILE))?;
         Ok(Self { dir: dir.into(), writer })
     }
 
-    /// Writes the cracks that have grown, from which another run can go on.
+    /// Writes where growth stands, from which another run can go on.
     ///
     /// # Errors
     /// What the system says.
-    pub fn write_paths(&self, paths: &CohesivePaths) -> io::Result<()> {
-        write_file(&self.dir, PATHS_FILE, &serde_json::to_vec(paths)?)
+    pub fn write_ways(&self, state: &GrowthState) -> io::Result<()> {
+        write_file(&self.dir, WAYS_FILE, &serde_json::to_vec(state)?)
     }
 
     /// Writes the load curve as far as it is known, so that a run that is killed leaves it.
@@ -82,7 +82,6 @@ impl PlaneLoadingWriter {
         let curve = load_curve(&record.curve);
         let none = || io::Error::new(io::ErrorKind::NotFound, "the load curve has no peak");
         let loading = LoadingResults::new(&curve, record.peak, &record.end).ok_or_else(none)?;
-        let loading = LoadingResults { paths: record.paths.clone(), ..loading };
-        self.writer.write_loading(info, loading, curve)
+        self.writer.write_loading(info, loading, curve, record.growth_end.clone())
     }
 }

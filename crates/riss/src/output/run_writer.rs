@@ -8,7 +8,7 @@ use super::results::{Results, RunStatus, StepResults};
 use super::vtk::collection;
 use super::whole_file::{remove_if_there, remove_leftovers, write_whole};
 use super::{FieldQuantity, OutputOptions, PICTURE_FILE, RESULTS_FILE, RunInfo, field_picture};
-use crate::analysis::{GrowthState, StaticResult};
+use crate::analysis::{GrowthEnd, GrowthState, StaticResult};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -143,9 +143,11 @@ impl RunWriter {
         info: &RunInfo,
         loading: LoadingResults,
         load_curve: Vec<LoadCurvePoint>,
+        growth_end: Option<GrowthEnd>,
     ) -> io::Result<Vec<PathBuf>> {
         let mut results = read_results(&self.dir)?;
         results.told(info);
+        results.growth_end = growth_end;
         results.files.insert(0, LOAD_CURVE_FILE.into());
         let table = table(&load_curve)?;
         (results.loading, results.load_curve) = (Some(loading), load_curve);

@@ -139,28 +139,6 @@ pub fn opening_rows(
     Ok(rows)
 }
 
-/// A place along a crack between which what joins the faces is linear.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Knot {
-    /// Index of the crack.
-    pub crack: usize,
-    /// Its place.
-    pub position: Vector2,
-}
-
-/// The knots, in the order of rows.
-pub fn knots(discrete: &Discretization) -> Vec<Knot> {
-    let mut knots = vec![];
-    for element in &discrete.crack_faces {
-        for (end, is_knot) in [element.range[0] == 0.0, element.range[1] == 1.0].into_iter().enumerate() {
-            if is_knot && knots.len() == element.stretch + end {
-                knots.push(Knot { crack: element.crack, position: element.ends[end] });
-            }
-        }
-    }
-    knots
-}
-
 /// The system with faces that are joined by the pressure of rows.
 ///
 /// # Errors

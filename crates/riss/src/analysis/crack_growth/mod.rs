@@ -3,13 +3,13 @@
 //! Reading order: [`settings`], [`state`] (what goes from step to step), `plan` (what each tip does and why),
 //! `increments` (how the new stretch is found), `advance` and `walls` (where it ends). Only here a crack moves.
 
-pub(in crate::analysis) mod advance;
+mod advance;
 mod increments;
 mod plan;
 mod seeding;
 pub mod settings;
 pub mod state;
-pub(in crate::analysis) mod walls;
+mod walls;
 
 use super::guard_rails::Rails;
 use super::linear_static::solve_step;

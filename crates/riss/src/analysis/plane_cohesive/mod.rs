@@ -1,29 +1,28 @@
 //! Cohesive cracks of a plane body: tied until they reach their strength, then opening along the path of equilibrium.
 //!
 //! The same law and the same path as in solids ([`super::cohesive`]); [`body`] condenses the body of the weak form onto the
-//! openings, and cracks that grow do so by [`growing`].
+//! openings. Where cracks grow, their ways come first, from the elastic body with open cracks, and then the load, on the
+//! whole ways [CendonEtAl2000]: a face that is tied changes nothing in the body, so that a crack may lie ahead of what is broken.
 
 mod body;
-mod growing;
 
 use super::cohesive::{
     Bond, CohesiveState, Condensed, Followed, LoadPoint, LoadingSettings, follow, peak_of, pictures,
 };
-use super::crack_growth::GrowthSettings;
-use super::linear_static::{Solved, discretize, result_of, solve_once};
+use super::crack_growth::{GrowthSettings, GrowthState, crack_growth};
+use super::linear_static::{Solved, discretize, result_of};
 use super::record::{CrackRecord, GrowthEnd, GrowthEndKind, Observer, Stage, StaticResult, TipRecord};
 use super::settings::Settings;
-use super::warnings::Warnings;
+use super::warnings::Warning;
 use crate::crack::CrackPath;
 use crate::error::Result;
 use crate::math::Vector2;
 use crate::model::Model;
-use crate::system::crack_faces::{Knot, joining_pressure, knots};
+use crate::system::crack_faces::joining_pressure;
 use crate::system::galerkin::displacement_gradients;
 use crate::system::{Discretization, Solution};
 use body::JoinedBody;
-use growing::Growing;
-pub use growing::{CohesivePaths, GrownPath};
+use std::ops::ControlFlow;
 
 /// The whole path.
 #[derive(Clone, Debug)]
@@ -34,17 +33,17 @@ pub struct PlaneLoadingRecord {
     pub peak: usize,
     /// Why it ended.
     pub end: GrowthEnd,
-    /// Its cracks from first to last, if they grow.
-    pub paths: Vec<GrownPath>,
-    /// The problem with the last of them.
+    /// Why the cracks grew no further, if they grow.
+    pub growth_end: Option<GrowthEnd>,
+    /// The problem with its cracks as they were loaded.
     pub model: Model,
 }
 
 /// Loads a plane body with cohesive cracks; none if the observer ended it. States with fields reach the observer as steps, in
-/// order, numbered by their point on the load curve.
+/// order, numbered by their point on the load curve; steps of growth before reach it with their states.
 ///
 /// - `growth`: how the cracks grow, if they do
-/// - `from`: the cracks that an earlier run had grown to, if it goes on from there
+/// - `from`: where growth goes on that an earlier run began
 ///
 /// # Errors
 /// Those of nodes, shape functions and solver.
@@ -53,41 +52,41 @@ pub fn plane_loading(
     settings: &Settings,
     loading: &LoadingSettings,
     growth: Option<&GrowthSettings>,
-    from: Option<CohesivePaths>,
+    from: Option<GrowthState>,
     observer: &mut dyn Observer,
 ) -> Result<Option<PlaneLoadingRecord>> {
-    let Some(growth) = growth else {
-        let Traced::Done(record) = traced(model, settings, loading, None, observer)? else { return Ok(None) };
-        return Ok(record.map(|r| *r));
-    };
-    let mut growing = Growing::new(model, growth, from);
-    let settings = growing.settings(settings);
-    loop {
-        match traced(&growing.model, &settings, loading, Some(&growing), observer)? {
-            Traced::Reached { state, place, load_factor } => {
-                let (discrete, solution) = *state;
-                growing.extend(&discrete, &solution, place, load_factor)?;
-                if observer.paths_grown(&growing.now()).is_break() {
-                    return Ok(None);
-                }
-            }
-            Traced::Done(record) => {
-                let Some(mut record) = record else { return Ok(None) };
-                if let Some(halt) = growing.halt {
-                    record.end.reason += &format!("; tips stopped before: {halt}");
-                }
-                return Ok(Some(PlaneLoadingRecord { paths: growing.paths, ..*record }));
-            }
-        }
-    }
+    let Some(growth) = growth else { return traced(model, settings, loading, observer) };
+    let elastic = Model { cohesive: None, ..model.clone() };
+    let mut ways = Ways { observer, cracks: vec![] };
+    let Some(end) = crack_growth(&elastic, settings, growth, from, &mut ways)? else { return Ok(None) };
+    let cracks = ways.cracks.into_iter().map(|c| CrackPath { name: c.name, vertices: c.path, ends: c.ends }).collect();
+    let record = traced(&Model { cracks, ..model.clone() }, settings, loading, observer)?;
+    Ok(record.map(|r| PlaneLoadingRecord { growth_end: Some(end), ..r }))
 }
 
-/// What becomes of cracks under load.
-enum Traced {
-    /// The whole path; none if the observer ended it.
-    Done(Option<Box<PlaneLoadingRecord>>),
-    /// A tip has to grow before the path goes on.
-    Reached { state: Box<(Discretization, Solution)>, place: Option<(usize, Vector2)>, load_factor: f64 },
+/// Keeps where cracks have come to, for an observer that hears of growth only what it takes to go on.
+struct Ways<'a> {
+    observer: &'a mut dyn Observer,
+    cracks: Vec<CrackRecord>,
+}
+
+impl Observer for Ways<'_> {
+    fn stage(&mut self, stage: Stage) {
+        self.observer.stage(stage);
+    }
+
+    fn warning(&mut self, warning: &Warning) {
+        self.observer.warning(warning);
+    }
+
+    fn wants_fields(&self, _step: usize) -> bool {
+        false
+    }
+
+    fn step(&mut self, result: &StaticResult, state: Option<&GrowthState>) -> ControlFlow<()> {
+        self.cracks.clone_from(&result.step.cracks);
+        state.map_or(ControlFlow::Continue(()), |state| self.observer.ways_grown(state))
+    }
 }
 
 /// Loads the cracks as they are.
@@ -95,65 +94,50 @@ fn traced(
     model: &Model,
     settings: &Settings,
     loading: &LoadingSettings,
-    growing: Option<&Growing<'_>>,
     observer: &mut dyn Observer,
-) -> Result<Traced> {
-    let Some(law) = model.cohesive.as_ref().map(|c| c.law) else { return Ok(Traced::Done(None)) };
+) -> Result<Option<PlaneLoadingRecord>> {
+    let Some(law) = model.cohesive.as_ref().map(|c| c.law) else { return Ok(None) };
     // Stresses at the tip of a cohesive crack are finite.
     let approximation = settings.approximation.without_automatic_enrichment();
     let settings = &Settings { approximation, ..settings.clone() };
     let discrete = discretize(model, settings, observer)?;
     observer.stage(Stage::Assembly);
     let Some(body) = JoinedBody::new(model, settings, &discrete)? else {
-        return free(model, settings, growing, discrete, observer);
+        let reason = "nothing of the cohesive cracks is tied".into();
+        let end = GrowthEnd { kind: GrowthEndKind::NoTipGrows, reason };
+        let (curve, model) = (vec![LoadPoint::default()], model.clone());
+        return Ok(Some(PlaneLoadingRecord { curve, peak: 0, end, growth_end: None, model }));
     };
     observer.stage(Stage::Solve);
     let condensed = body.condense()?;
-    let knots = knots(&discrete);
-    let bond = |(knot, area): (&Knot, f64)| Bond {
-        area,
-        is_near_front: growing.is_some_and(|g| g.is_near_tip(knot.crack, knot.position)),
-    };
-    let bonds: Vec<Bond> = knots.iter().zip(body.areas()).map(bond).collect();
-    let followed = follow(&condensed, body.measure(), &law, loading, &bonds, observer);
-    if followed.is_stopped {
-        return Ok(Traced::Done(None));
-    }
-    let Followed { curve, states, mut end, reached, .. } = followed;
-    let solution = |point: usize| {
-        let state = &states[point];
-        let tractions = condensed.tractions(state.load_factor, &state.openings);
-        body.state(state.load_factor, &state.openings, &tractions)
-    };
-    if let (Some(n), Some(_)) = (growing.and_then(Growing::done), reached) {
-        let reason = format!("the cracks have grown by {n} increments, and the next would be due");
-        end = GrowthEnd { kind: GrowthEndKind::StepsDone, reason };
-    } else if let Some(pair) = reached {
-        let solution = solution(states.len() - 1)?;
-        let Knot { crack, position } = knots[pair];
-        let load_factor = states[states.len() - 1].load_factor;
-        drop(body);
-        let state = Box::new((discrete, solution));
-        return Ok(Traced::Reached { state, place: Some((crack, position)), load_factor });
+    let bonds: Vec<Bond> = body.areas().into_iter().map(|area| Bond { area, is_near_front: false }).collect();
+    let Followed { curve, states, end, is_stopped, .. } =
+        follow(&condensed, body.measure(), &law, loading, &bonds, observer);
+    if is_stopped {
+        return Ok(None);
     }
     let peak = peak_of(&curve);
     let points = pictures(&curve, peak);
-    let solutions = points.iter().map(|point| solution(*point)).collect::<Result<Vec<_>>>()?;
-    let tractions: Vec<Vec<f64>> = points.iter().map(|point| normal_tractions(&condensed, &states[*point])).collect();
+    let solution = |point: &usize| {
+        let state = &states[*point];
+        let tractions = condensed.tractions(state.load_factor, &state.openings);
+        body.state(state.load_factor, &state.openings, &tractions)
+    };
+    let solutions = points.iter().map(solution).collect::<Result<Vec<_>>>()?;
     drop(body);
-    let record = PlaneLoadingRecord { curve, peak, end, paths: vec![], model: model.clone() };
     let (solution, cracks, method) = (Solution::default(), crack_records(model), settings.constraints);
     let mut solved = Solved { discrete, solution, gradients: vec![], method, cracks };
-    for ((point, solution), tractions) in points.into_iter().zip(solutions).zip(tractions) {
+    for (point, solution) in points.into_iter().zip(solutions) {
         let gradients = displacement_gradients(&solved.discrete, &solution.parameters)?;
         solved = Solved { solution, gradients, ..solved };
-        let mut result = result_of(model, settings, &solved, (point, record.curve[point].load_factor), observer)?;
-        add_tractions(model, &solved.discrete, &tractions, &mut result);
+        let state = &states[point];
+        let mut result = result_of(model, settings, &solved, (point, state.load_factor), observer)?;
+        add_tractions(model, &solved.discrete, &normal_tractions(&condensed, state), &mut result);
         if observer.step(&result, None).is_break() {
-            return Ok(Traced::Done(None));
+            return Ok(None);
         }
     }
-    Ok(Traced::Done(Some(Box::new(record))))
+    Ok(Some(PlaneLoadingRecord { curve, peak, end, growth_end: None, model: model.clone() }))
 }
 
 /// Cracks with their tips; factors of a cohesive tip are none.
@@ -183,21 +167,4 @@ fn add_tractions(model: &Model, discrete: &Discretization, tractions: &[f64], re
         };
         faces.traction = faces.positions.iter().map(at).collect();
     }
-}
-
-/// Cracks of which nothing is tied: tips grow by the stress of the elastic body, if they may.
-fn free(
-    model: &Model,
-    settings: &Settings,
-    growing: Option<&Growing<'_>>,
-    discrete: Discretization,
-    observer: &mut dyn Observer,
-) -> Result<Traced> {
-    if growing.is_some_and(Growing::may_grow) {
-        let (solution, _) = solve_once(model, settings, &discrete, &mut Warnings::new(observer))?;
-        return Ok(Traced::Reached { state: Box::new((discrete, solution)), place: None, load_factor: 0.0 });
-    }
-    let end = GrowthEnd { kind: GrowthEndKind::NoTipGrows, reason: "nothing of the cohesive cracks is tied".into() };
-    let curve = vec![LoadPoint::default()];
-    Ok(Traced::Done(Some(Box::new(PlaneLoadingRecord { curve, peak: 0, end, paths: vec![], model: model.clone() }))))
 }

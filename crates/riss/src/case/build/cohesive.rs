@@ -11,8 +11,8 @@ use crate::math::Vector2;
 use crate::model::{CohesiveCrack, CohesiveModel};
 use crate::system::ConstraintMethod;
 
-/// Keys of `[growth]` that say nothing to cohesive cracks.
-const OTHER_GROWTH: [&str; 7] = ["criterion", "equivalent", "law", "control", "form", "seeding", "stop"];
+/// Keys of `[growth]` that say nothing to cohesive cracks, whose way alone is sought.
+const OTHER_GROWTH: [&str; 3] = ["law", "seeding", "stop"];
 
 /// What of a crack is cohesive, if anything is.
 pub(super) fn crack(crack: &schema::Crack, key: &str, report: &mut Report) -> Option<CohesiveCrack<2>> {
@@ -89,8 +89,8 @@ fn refuse(file: &CaseFile, index: usize, report: &mut Report) {
     }
     for key in OTHER_GROWTH.map(|key| format!("growth.{key}")) {
         if report.document.says(&key) {
-            let message = format!("{because}: it grows across the largest principal stress ahead");
-            report.error(key, message).suggest("leave it out: `increment`, `steps` and `held` are all that applies");
+            let message = format!("{because}: [growth] finds its way, and how far it breaks its law says");
+            report.error(key, message).suggest("leave it out");
         }
     }
 }
