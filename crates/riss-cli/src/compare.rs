@@ -6,11 +6,11 @@ use crate::table::{aligned, number};
 use crate::{BAD_CASE, DIFFERENT, DONE, STOPPED, diagnostics, solid_compare};
 use clap::Args;
 use riss::analysis::{
-    GrowthState, Observer, RefinementRecord, Stage, StaticResult, Warning, crack_growth, linear_static,
+    GrowthState, Observer, RefinementRecord, Stage, StaticResult, Warning, crack_growth, linear_static, plane_loading,
 };
 use riss::case::{AnyCase, Case};
+use riss::output::loading_comparison::Tolerances;
 use riss::output::results::StepResults;
-use riss::output::solid_comparison::Tolerances;
 use riss::output::{AnyResults, Comparison, RESULTS_FILE, Results, RunStatus, SolidComparison, read_any_results};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -57,16 +57,17 @@ pub fn compare(arguments: &CompareArguments) -> u8 {
         (Ok(first), Ok(second)) => (first, second),
         (Err(code), _) | (_, Err(code)) => return code,
     };
+    let [path, k, load] = [arguments.path, arguments.k, arguments.load].map(|v| 0.01 * v);
+    let allowed = Tolerances { path, k, load };
     let (text, json, agrees) = match (&first, &second) {
         (AnyResults::Plane(first), AnyResults::Plane(second)) => {
             let comparison = Comparison::new(first, second);
-            let agrees = comparison.agrees(0.01 * arguments.path, 0.01 * arguments.k);
+            let agrees = comparison.agrees(&allowed);
             (describe(&comparison), serde_json::to_string_pretty(&comparison), agrees)
         }
         (AnyResults::Solid(first), AnyResults::Solid(second)) => {
             let comparison = SolidComparison::new(first, second);
-            let [path, k, load] = [arguments.path, arguments.k, arguments.load].map(|v| 0.01 * v);
-            let agrees = comparison.agrees(&Tolerances { path, k, load });
+            let agrees = comparison.agrees(&allowed);
             (solid_compare::describe(&comparison), serde_json::to_string_pretty(&comparison), agrees)
         }
         (AnyResults::Plane(_), AnyResults::Solid(_)) => return unlike(&arguments.first, &arguments.second),
@@ -113,19 +114,27 @@ fn run_case(path: &Path, overrides: &[String], is_quiet: bool) -> Result<AnyResu
 
 fn run_plane(case: &Case, is_quiet: bool) -> Result<Results, u8> {
     let mut watch = Watch { progress: Progress::new(is_quiet), steps: vec![], last: None };
-    let outcome = match &case.growth {
-        Some(growth) => crack_growth(&case.model, &case.settings, growth, None, &mut watch).map(|_| ()),
-        None => linear_static(&case.model, &case.settings, &mut watch).map(|_| ()),
+    let (model, settings) = (&case.model, &case.settings);
+    let outcome = match (&case.loading, &case.growth) {
+        (Some(loading), growth) => plane_loading(model, settings, loading, growth.as_ref(), None, &mut watch),
+        (None, Some(growth)) => crack_growth(model, settings, growth, None, &mut watch).map(|_| None),
+        (None, None) => linear_static(model, settings, &mut watch).map(|_| None),
     };
     let wall_time_s = watch.progress.finish();
-    if let Err(error) = outcome {
+    let record = outcome.map_err(|error| {
         eprintln!("error: {}: {error}", case.path.display());
-        return Err(STOPPED);
-    }
+        STOPPED
+    })?;
     let stage_time_s = std::mem::take(&mut watch.progress.stage_time_s);
     let run = RunRecord { wall_time_s, stage_time_s, peak_memory_bytes: peak_memory_bytes() };
     let info = run.info(case, RunStatus::Done);
-    Ok(watch.last.map(|last| Results::of_steps(&info, &last, watch.steps)).expect("an analysis has a step"))
+    let Some(last) = watch.last else {
+        eprintln!("error: {}: the load curve has no peak", case.path.display());
+        return Err(STOPPED);
+    };
+    let mut results = Results::of_steps(&info, &last, watch.steps);
+    record.iter().for_each(|record| results.loaded(record));
+    Ok(results)
 }
 
 /// Keeps every step.
@@ -186,6 +195,11 @@ fn describe(comparison: &Comparison) -> String {
     if !tips.is_empty() {
         let head = ["crack", "end", "steps", "K difference", "when grown by", "mean", "error bar there"];
         text += &format!("\n{}", aligned(&head, &tips, &[0, 1]));
+    }
+    if let Some(loading) = &comparison.loading {
+        text += &format!("\n{}", solid_compare::loading_table(loading));
+    } else if comparison.one_load_curve {
+        text += "\nonly one of them has a load curve\n";
     }
     for (names, which) in [(&comparison.only_in_first, "A"), (&comparison.only_in_second, "B")] {
         if !names.is_empty() {

@@ -57,6 +57,12 @@ pub fn run(arguments: &ConvergeArguments) -> u8 {
             return BAD_CASE;
         }
     };
+    if let AnyCase::Plane(case) = &case
+        && case.loading.is_some()
+    {
+        crate::fail("studies of cohesive cracks are made in space only: riss compare shows what other nodes change");
+        return BAD_CASE;
+    }
     let mut factors = arguments.factors.clone();
     if factors.is_empty() {
         factors = match &case {

@@ -9,7 +9,8 @@ use riss::analysis::{
 };
 use riss::case::SolidCase;
 use riss::model::SolidModel;
-use riss::output::solid_comparison::{FrontComparison, LoadingComparison};
+use riss::output::loading_comparison::LoadingComparison;
+use riss::output::solid_comparison::FrontComparison;
 use riss::output::solid_results::SolidStepResults;
 use riss::output::{RunInfo, RunStatus, SolidComparison, SolidResults};
 use std::ops::ControlFlow;
@@ -160,7 +161,8 @@ fn front_row(step: Option<usize>, f: &FrontComparison) -> Vec<String> {
     row
 }
 
-fn loading_table(l: &LoadingComparison) -> String {
+/// Differences of load curves.
+pub fn loading_table(l: &LoadingComparison) -> String {
     let row = |name: &str, values: [Option<f64>; 2]| {
         let difference = values[0].zip(values[1]).filter(|(a, _)| *a != 0.0).map(|(a, b)| (b - a) / a.abs());
         let [a, b] = values.map(|v| known(v, number));

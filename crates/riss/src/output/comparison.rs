@@ -1,5 +1,6 @@
-//! How the results of two runs differ: crack paths, and stress intensity factors along them.
+//! How the results of two runs differ: crack paths, stress intensity factors along them, load curves.
 
+use super::loading_comparison::{LoadingComparison, Tolerances};
 use super::results::{CrackResults, Results, TipResults};
 use crate::crack::End;
 use crate::geometry::path_distance::{path_distance, path_length};
@@ -17,6 +18,10 @@ pub struct Comparison {
     pub only_in_first: Vec<String>,
     /// Names of cracks that only the second has.
     pub only_in_second: Vec<String>,
+    /// Load curves of cohesive cracks, if both have them; tips are then not compared.
+    pub loading: Option<LoadingComparison>,
+    /// Whether one of them has a load curve and the other has not.
+    pub one_load_curve: bool,
 }
 
 /// Differences of one crack.
@@ -65,19 +70,31 @@ impl Comparison {
             of.iter().filter(|c| !from.iter().any(|d| d.name == c.name)).map(|c| c.name.clone()).collect()
         };
         let pairs = a.iter().filter_map(|c| Some((c, b.iter().find(|d| d.name == c.name)?)));
+        let mut cracks: Vec<CrackComparison> = pairs.map(|(c, d)| compare_crack(c, d, first, second)).collect();
+        let loading = LoadingComparison::new(first.loading_with_curve(), second.loading_with_curve());
+        if loading.is_some() {
+            cracks.iter_mut().for_each(|c| c.tips.clear());
+        }
         Self {
-            cracks: pairs.map(|(c, d)| compare_crack(c, d, first, second)).collect(),
+            cracks,
             only_in_first: missing(&a, &b),
             only_in_second: missing(&b, &a),
+            loading,
+            one_load_curve: first.loading.is_some() != second.loading.is_some(),
         }
     }
 
-    /// Whether both have the same cracks, within shares of their lengths and of the magnitude of their factors.
-    pub fn agrees(&self, path: f64, k: f64) -> bool {
+    /// Whether both have the same cracks and load curves, within shares of lengths, magnitudes of factors and greatest loads.
+    pub fn agrees(&self, allowed: &Tolerances) -> bool {
+        let Tolerances { path, k, load } = *allowed;
         let near = |c: &CrackComparison| {
             c.path_distance_relative <= path && c.tips.iter().all(|t| t.k_difference.is_some_and(|d| d <= k))
         };
-        self.only_in_first.is_empty() && self.only_in_second.is_empty() && self.cracks.iter().all(near)
+        self.only_in_first.is_empty()
+            && self.only_in_second.is_empty()
+            && self.cracks.iter().all(near)
+            && !self.one_load_curve
+            && self.loading.as_ref().is_none_or(|l| l.agrees(load))
     }
 }
 
@@ -226,9 +243,10 @@ mod tests {
         assert!((tip.k_difference.unwrap() - 0.025).abs() < 1e-12);
         assert!((tip.k_difference_mean.unwrap() - 0.0125).abs() < 1e-12);
         assert!((tip.k_uncertainty.unwrap() - 0.01 / 20.0).abs() < 1e-12);
-        assert!(found.agrees(0.04, 0.026) && !found.agrees(0.03, 0.026) && !found.agrees(0.04, 0.024));
+        let within = |path, k| found.agrees(&Tolerances { path, k, load: 0.0 });
+        assert!(within(0.04, 0.026) && !within(0.03, 0.026) && !within(0.04, 0.024));
         let same = Comparison::new(&a, &a);
-        assert!(same.agrees(0.0, 0.0) && same.cracks[0].tips[0].steps == 3);
+        assert!(same.agrees(&Tolerances { path: 0.0, k: 0.0, load: 0.0 }) && same.cracks[0].tips[0].steps == 3);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Files that an analysis leaves behind: results, history, fields and pictures.
 //!
 //! Only this folder writes. Knows no case files. Reading order: [`run_writer`] (step by step), [`results`] (the
-//! contract), [`load_curve`] and [`plane_loading_writer`] (of cohesive cracks), [`comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
+//! contract), [`load_curve`] and [`plane_loading_writer`] (of cohesive cracks), [`comparison`] and [`loading_comparison`] (of two of them), [`history`], [`fields`] with `vtk` below it, [`model_picture`],
 //! [`field_picture`] and [`shape_picture`] with `svg` and `contours` below them, [`report`], [`exports`],
 //! [`convergence`], [`run_table`] (of several runs), [`whole_file`]; for solids [`solid_results`], [`solid_files`],
 //! [`solid_writer`] (step by step), [`loading_writer`] (of cohesive cracks), [`solid_report`], [`solid_picture()`],
@@ -16,6 +16,7 @@ pub mod field_picture;
 pub mod fields;
 pub mod history;
 pub mod load_curve;
+pub mod loading_comparison;
 pub mod loading_writer;
 pub mod model_picture;
 pub mod plane_loading_writer;

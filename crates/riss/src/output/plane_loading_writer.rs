@@ -1,6 +1,6 @@
 //! Writes what a plane body with cohesive cracks does under load: the states with fields as they come, then the curve.
 
-use super::load_curve::{LOAD_CURVE_FILE, LoadingResults, load_curve, table};
+use super::load_curve::{LOAD_CURVE_FILE, load_curve, table};
 use super::report::RunSource;
 use super::run_writer::{RunWriter, write_file};
 use super::whole_file::{read_if_there, remove_if_there, write_whole};
@@ -79,9 +79,6 @@ impl PlaneLoadingWriter {
     /// # Errors
     /// What the system says; `NotFound` if no state was written.
     pub fn finish(&self, info: &RunInfo, record: &PlaneLoadingRecord) -> io::Result<Vec<PathBuf>> {
-        let curve = load_curve(&record.curve);
-        let none = || io::Error::new(io::ErrorKind::NotFound, "the load curve has no peak");
-        let loading = LoadingResults::new(&curve, record.peak, &record.end).ok_or_else(none)?;
-        self.writer.write_loading(info, loading, curve, record.growth_end.clone())
+        self.writer.write_loading(info, record)
     }
 }

@@ -3,9 +3,10 @@
 //! What is not known is `null`, never 0 and never left out; so is a number that is not finite.
 
 use super::RunInfo;
-use super::load_curve::{LoadCurvePoint, LoadingResults};
+use super::load_curve::{LoadCurvePoint, LoadingResults, load_curve};
 use crate::analysis::{
-    CrackRecord, GrowthEnd, RefinementRecord, Stability, StaticResult, StepRecord, TipRecord, TipStatus,
+    CrackRecord, GrowthEnd, PlaneLoadingRecord, RefinementRecord, Stability, StaticResult, StepRecord, TipRecord,
+    TipStatus,
 };
 use crate::crack::{End, EndKind};
 use crate::math::Vector2;
@@ -234,6 +235,18 @@ impl Results {
         self.wall_time_s = finite(info.wall_time_s);
         self.stage_time_s = sum_by_stage(&info.stage_time_s);
         self.peak_memory_bytes = info.peak_memory_bytes;
+    }
+
+    /// Adds how cohesive cracks were loaded.
+    pub fn loaded(&mut self, record: &PlaneLoadingRecord) {
+        self.load_curve = load_curve(&record.curve);
+        self.loading = LoadingResults::new(&self.load_curve, record.peak, &record.end);
+        self.growth_end.clone_from(&record.growth_end);
+    }
+
+    /// Load curve and what became of it, if there is one.
+    pub(super) fn loading_with_curve(&self) -> Option<(&LoadingResults, &[LoadCurvePoint])> {
+        Some((self.loading.as_ref()?, &self.load_curve))
     }
 
     /// As text, with a line break at the end.

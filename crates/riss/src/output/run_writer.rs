@@ -2,13 +2,13 @@
 
 use super::fields::{STEP_FILE_KINDS, step_file_name, step_files};
 use super::history::history_csv;
-use super::load_curve::{LOAD_CURVE_FILE, LoadCurvePoint, LoadingResults, table};
+use super::load_curve::{LOAD_CURVE_FILE, table};
 use super::report::{self, REPORT_FILE, REPORT_FOLDER, RunSource};
 use super::results::{Results, RunStatus, StepResults};
 use super::vtk::collection;
 use super::whole_file::{remove_if_there, remove_leftovers, write_whole};
 use super::{FieldQuantity, OutputOptions, PICTURE_FILE, RESULTS_FILE, RunInfo, field_picture};
-use crate::analysis::{GrowthEnd, GrowthState, StaticResult};
+use crate::analysis::{GrowthState, PlaneLoadingRecord, StaticResult};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -138,19 +138,12 @@ impl RunWriter {
     ///
     /// # Errors
     /// What the system says; `NotFound` if no step was written.
-    pub(super) fn write_loading(
-        &self,
-        info: &RunInfo,
-        loading: LoadingResults,
-        load_curve: Vec<LoadCurvePoint>,
-        growth_end: Option<GrowthEnd>,
-    ) -> io::Result<Vec<PathBuf>> {
+    pub(super) fn write_loading(&self, info: &RunInfo, record: &PlaneLoadingRecord) -> io::Result<Vec<PathBuf>> {
         let mut results = read_results(&self.dir)?;
         results.told(info);
-        results.growth_end = growth_end;
+        results.loaded(record);
         results.files.insert(0, LOAD_CURVE_FILE.into());
-        let table = table(&load_curve)?;
-        (results.loading, results.load_curve) = (Some(loading), load_curve);
+        let table = table(&results.load_curve)?;
         let report = report::report(&self.dir, &results)?.into_bytes();
         let json = results.to_json().into_bytes();
         self.write_all(vec![(LOAD_CURVE_FILE.into(), table), (REPORT_FILE.into(), report), (RESULTS_FILE.into(), json)])

@@ -1,9 +1,8 @@
 //! How the results of two runs of solids differ: factors along fronts, steps of growth, load curves.
 
-use super::load_curve::LoadCurvePoint;
+use super::loading_comparison::{LoadingComparison, Tolerances, relative};
 use super::solid_results::{FrontPointResults, FrontResults, SolidResults};
-use crate::geometry::path_distance::path_distance;
-use crate::math::{Vector2, Vector3};
+use crate::math::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -73,34 +72,6 @@ pub struct FrontComparison {
     pub k_uncertainty: Option<f64>,
 }
 
-/// Differences of two load curves.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LoadingComparison {
-    /// Greatest loads [stress·length²].
-    pub peak_loads: [Option<f64>; 2],
-    /// Displacements there [length].
-    pub peak_displacements: [Option<f64>; 2],
-    /// Energies dissipated in the end [stress·length³].
-    pub dissipated_energies: [Option<f64>; 2],
-    /// Difference of the greatest loads over the first.
-    pub peak_load_difference: Option<f64>,
-    /// Greatest distance of the curves, as far as both go, with loads over the greatest load and displacements over the
-    /// greatest displacement of the first.
-    pub curve_distance: f64,
-}
-
-/// Largest differences that still agree.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerances {
-    /// Of fronts, over their length.
-    pub path: f64,
-    /// Of factors, over their magnitude.
-    pub k: f64,
-    /// Of loads, over the greatest.
-    pub load: f64,
-}
-
 impl SolidComparison {
     /// Compares two runs. Cracks belong together by name, steps of growth by the area of all cracks.
     pub fn new(first: &SolidResults, second: &SolidResults) -> Self {
@@ -131,7 +102,7 @@ impl SolidComparison {
             steps: pairs.iter().map(|[i, k]| compare_step(&a[*i], &b[*k])).collect(),
             only_in_first: missing(&a, 0),
             only_in_second: missing(&b, 1),
-            loading: compare_loading(first, second),
+            loading: LoadingComparison::new(first.loading_with_curve(), second.loading_with_curve()),
             largest_principal: [first, second].map(|r| r.stress.largest_principal),
             unlike,
         }
@@ -144,9 +115,7 @@ impl SolidComparison {
             f.k_difference.is_some_and(|d| d <= allowed.k)
                 && f.front_distance_relative.is_some_and(|d| d <= allowed.path)
         };
-        let loads = self.loading.as_ref().is_none_or(|l| {
-            l.curve_distance <= allowed.load && l.peak_load_difference.is_some_and(|d| d.abs() <= allowed.load)
-        });
+        let loads = self.loading.as_ref().is_none_or(|l| l.agrees(allowed.load));
         let is_bare = self.loading.is_none() && fronts().next().is_none();
         let stress = relative(self.largest_principal).is_some_and(|d| d.abs() <= allowed.load);
         self.unlike.is_empty()
@@ -156,12 +125,6 @@ impl SolidComparison {
             && loads
             && (!is_bare || stress)
     }
-}
-
-/// Difference of the second from the first, over the first.
-fn relative([a, b]: [Option<f64>; 2]) -> Option<f64> {
-    let (a, b) = (a?, b?);
-    (a != 0.0).then(|| (b - a) / a.abs()).or_else(|| (a == b).then_some(0.0))
 }
 
 /// What is known of cracks at one time.
@@ -320,26 +283,6 @@ fn nearest(from: &Station, front: &FrontResults, curve: &[Station]) -> Option<(S
         }
     }
     Some((place, distance))
-}
-
-fn compare_loading(first: &SolidResults, second: &SolidResults) -> Option<LoadingComparison> {
-    let (a, b) = (first.loading.as_ref()?, second.loading.as_ref()?);
-    let most = |of: fn(&LoadCurvePoint) -> Option<f64>| {
-        first.load_curve.iter().filter_map(of).map(f64::abs).fold(f64::MIN_POSITIVE, f64::max)
-    };
-    let size = Vector2::new(most(|p| p.displacement), most(|p| p.load));
-    let line = |r: &SolidResults| {
-        let point = |p: &LoadCurvePoint| Some(Vector2::new(p.displacement?, p.load?).component_div(&size));
-        r.load_curve.iter().filter_map(point).collect::<Vec<_>>()
-    };
-    let peak_loads = [a, b].map(|l| l.peak.load);
-    Some(LoadingComparison {
-        peak_loads,
-        peak_displacements: [a, b].map(|l| l.peak.displacement),
-        dissipated_energies: [a, b].map(|l| l.dissipated_energy),
-        peak_load_difference: relative(peak_loads),
-        curve_distance: path_distance(&line(first), &line(second)),
-    })
 }
 
 #[cfg(test)]

@@ -253,6 +253,11 @@ impl SolidResults {
         }
     }
 
+    /// Load curve and what became of it, if there is one.
+    pub(super) fn loading_with_curve(&self) -> Option<(&LoadingResults, &[LoadCurvePoint])> {
+        Some((self.loading.as_ref()?, &self.load_curve))
+    }
+
     /// Adds how the cracks were loaded.
     pub fn loaded(&mut self, record: &LoadingRecord) {
         self.load_curve = load_curve(&record.curve);
