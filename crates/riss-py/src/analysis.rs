@@ -4,11 +4,15 @@ use crate::case::Case;
 use crate::error;
 use crate::step::{State, Step};
 use pyo3::prelude::*;
-use riss::analysis::{GrowthEndKind, GrowthState, Observer, Stage, StaticResult, Warning, crack_growth, linear_static};
+use riss::analysis::{
+    GrowthEndKind, GrowthState, LoadPoint, Observer, Stage, StaticResult, Warning, crack_growth, linear_static, plane_loading,
+};
 use riss::output::results::StepResults;
-use riss::output::{OutputOptions, RunInfo, RunSource, RunStatus, RunWriter};
+use riss::output::load_curve::loading_json;
+use riss::output::{OutputOptions, PlaneLoadingWriter, RunInfo, RunSource, RunStatus, RunWriter};
+use std::io;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -17,6 +21,8 @@ use std::time::{Duration, Instant};
 
 /// How often Ctrl-C is looked for.
 const PATIENCE: Duration = Duration::from_millis(50);
+/// The load curve is written anew after as many points.
+const CURVE_PACE: usize = 100;
 
 /// What the run says to Python.
 pub enum Event<S> {
@@ -46,6 +52,8 @@ pub enum Failure {
 
 /// Runs a case to its end; steps go to `on_step`, which returns whether to go on.
 ///
+/// Returns the load curve of cohesive cracks with what became of it, as JSON; none without.
+///
 /// Ctrl-C ends the run after the step at hand, a second one at once. Errors of the callbacks end it, too.
 #[pyfunction]
 #[pyo3(signature = (case, start, out, threads, on_stage, on_warning, on_step))]
@@ -59,7 +67,7 @@ pub fn run(
     on_stage: Bound<'_, PyAny>,
     on_warning: Bound<'_, PyAny>,
     on_step: Bound<'_, PyAny>,
-) -> PyResult<()> {
+) -> PyResult<Option<String>> {
     let stop = Arc::new(AtomicBool::new(false));
     let (send, receive) = channel();
     let start = start.map(State::plane).transpose()?;
@@ -127,36 +135,33 @@ struct Job {
 }
 
 impl Job {
-    fn run(self, send: Sender<Event<Step>>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
+    fn run(self, send: Sender<Event<Step>>, stop: Arc<AtomicBool>) -> Result<Option<String>, Failure> {
         in_pool(self.threads, || self.run_here(send, stop))
     }
 
-    fn run_here(self, send: Sender<Event<Step>>, stop: Arc<AtomicBool>) -> Result<(), Failure> {
+    fn run_here(self, send: Sender<Event<Step>>, stop: Arc<AtomicBool>) -> Result<Option<String>, Failure> {
         let Self { case, start, out, .. } = self;
-        let output = &case.output;
-        let options =
-            OutputOptions { fields: output.fields, nodes: output.nodes, integration_points: output.integration_points };
-        let writer = match &out {
-            None => None,
-            Some(dir) => {
-                let writer = match &start {
-                    Some(state) => RunWriter::resume(dir, options, state.step),
-                    None => RunWriter::new(dir, options),
-                };
-                let writer = writer.map_err(|e| Failure::Files(dir.clone(), e))?;
-                writer.describe(&source(&case)).map_err(|e| Failure::Files(dir.clone(), e))?;
-                Some(writer)
+        let files = |e: io::Error| Failure::Files(out.clone().unwrap_or_default(), e);
+        let writer = out.as_deref().map(|dir| Writer::new(dir, &case, start.as_ref())).transpose().map_err(files)?;
+        let mut listener = Listener { case: &case, send, stop, writer, clock: Clock::new(), is_heard: true, problem: None };
+        let (model, settings) = (&case.model, &case.settings);
+        let outcome = match (&case.loading, &case.growth) {
+            (Some(loading), growth) => {
+                plane_loading(model, settings, loading, growth.as_ref(), start, &mut listener)
             }
+            (None, None) => linear_static(model, settings, &mut listener).map(|_| None),
+            (None, Some(growth)) => crack_growth(model, settings, growth, start, &mut listener).map(|_| None),
         };
-        let mut listener = Listener { case: &case, send, stop, writer, clock: Clock::new(), problem: None };
-        let outcome = match &case.growth {
-            None => linear_static(&case.model, &case.settings, &mut listener).map(drop),
-            Some(growth) => crack_growth(&case.model, &case.settings, growth, start, &mut listener).map(drop),
-        };
-        match (listener.problem, outcome) {
-            (Some(e), _) => Err(Failure::Files(out.unwrap_or_default(), e)),
-            (None, outcome) => outcome.map_err(Failure::Analysis),
+        if let Some(e) = listener.problem.take() {
+            return Err(files(e));
         }
+        let Some(record) = outcome.map_err(Failure::Analysis)? else { return Ok(None) };
+        let is_done = record.end.kind != GrowthEndKind::Failed;
+        let info = listener.info(if is_done { RunStatus::Done } else { RunStatus::Stopped });
+        if let Some(Writer::Loading(writer)) = &listener.writer {
+            writer.finish(&info, &record).map_err(files)?;
+        }
+        Ok(loading_json(&record))
     }
 }
 
@@ -210,12 +215,74 @@ struct Listener<'a> {
     case: &'a riss::case::Case,
     send: Sender<Event<Step>>,
     stop: Arc<AtomicBool>,
-    writer: Option<RunWriter>,
+    writer: Option<Writer>,
     clock: Clock,
-    problem: Option<std::io::Error>,
+    /// Whether Python still wants to hear of states of loading.
+    is_heard: bool,
+    problem: Option<io::Error>,
+}
+
+/// What writes the files of a run.
+enum Writer {
+    Steps(RunWriter),
+    Loading(PlaneLoadingWriter),
+}
+
+impl Writer {
+    fn new(dir: &Path, case: &riss::case::Case, start: Option<&GrowthState>) -> io::Result<Self> {
+        let output = &case.output;
+        let options =
+            OutputOptions { fields: output.fields, nodes: output.nodes, integration_points: output.integration_points };
+        if case.loading.is_some() {
+            return PlaneLoadingWriter::new(dir, options, &source(case)).map(Self::Loading);
+        }
+        let writer = match start {
+            Some(state) => RunWriter::resume(dir, options, state.step),
+            None => RunWriter::new(dir, options),
+        }?;
+        writer.describe(&source(case))?;
+        Ok(Self::Steps(writer))
+    }
+}
+
+impl Listener<'_> {
+    fn info(&self, status: RunStatus) -> RunInfo {
+        RunInfo {
+            title: self.case.model.title.clone(),
+            method: self.case.settings.method.name().into(),
+            units: self.case.units.clone(),
+            status,
+            wall_time_s: self.clock.start.elapsed().as_secs_f64(),
+            stage_time_s: self.clock.stages.clone(),
+            peak_memory_bytes: None,
+        }
+    }
+
+    /// Goes on unless something could not be written or Python wants no more.
+    fn after(&mut self, written: io::Result<()>) -> ControlFlow<()> {
+        self.problem = written.err();
+        let stops = self.problem.is_some() || self.stop.load(Ordering::Relaxed);
+        if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
 }
 
 impl Observer for Listener<'_> {
+    fn load_curve(&mut self, curve: &[LoadPoint]) -> ControlFlow<()> {
+        let written = match &self.writer {
+            Some(Writer::Loading(writer)) if curve.len() % CURVE_PACE == 0 => writer.write_curve(curve),
+            _ => Ok(()),
+        };
+        self.after(written)
+    }
+
+    fn ways_grown(&mut self, state: &GrowthState) -> ControlFlow<()> {
+        let written = match &self.writer {
+            Some(Writer::Loading(writer)) => writer.write_ways(state),
+            _ => Ok(()),
+        };
+        self.after(written)
+    }
+
     fn stage(&mut self, stage: Stage) {
         self.clock.begin(Some(stage));
         // Nobody listens after a second Ctrl-C.
@@ -230,29 +297,30 @@ impl Observer for Listener<'_> {
         self.clock.begin(None);
         let times = self.clock.stages[self.clock.n_taken..].to_vec();
         self.clock.n_taken = self.clock.stages.len();
-        if let Some(writer) = &mut self.writer {
-            let status = match (&self.case.growth, &result.step.end) {
-                (None, _) => RunStatus::Done,
-                (Some(_), Some(end)) if end.kind != GrowthEndKind::Failed => RunStatus::Done,
-                (Some(_), Some(_) | None) => RunStatus::Stopped,
-            };
-            let info = RunInfo {
-                title: self.case.model.title.clone(),
-                method: self.case.settings.method.name().into(),
-                units: self.case.units.clone(),
-                status,
-                wall_time_s: self.clock.start.elapsed().as_secs_f64(),
-                stage_time_s: self.clock.stages.clone(),
-                peak_memory_bytes: None,
-            };
-            if let Err(e) = writer.write_step(&info, result, &times, state) {
-                self.problem = Some(e);
-                return ControlFlow::Break(());
-            }
+        let status = match (&self.case.growth, &result.step.end) {
+            (None, _) => RunStatus::Done,
+            (Some(_), Some(end)) if end.kind != GrowthEndKind::Failed => RunStatus::Done,
+            (Some(_), Some(_) | None) => RunStatus::Stopped,
+        };
+        let info = self.info(status);
+        let written = match &mut self.writer {
+            Some(Writer::Steps(writer)) => writer.write_step(&info, result, &times, state).map(drop),
+            Some(Writer::Loading(writer)) => writer.write_step(&info, result, &times),
+            None => Ok(()),
+        };
+        if let Err(e) = written {
+            self.problem = Some(e);
+            return ControlFlow::Break(());
         }
         let mut model = self.case.model.clone();
         if let Some(state) = state {
             model.cracks = state.cracks.clone();
+        } else {
+            // Cohesive cracks may have grown before.
+            model.cracks.iter_mut().zip(&result.step.cracks).for_each(|(crack, record)| {
+                crack.vertices.clone_from(&record.path);
+                crack.ends = record.ends;
+            });
         }
         let step = Step {
             record: StepResults::new(result, &times),
@@ -261,7 +329,15 @@ impl Observer for Listener<'_> {
             settings: Arc::new(self.case.settings.clone()),
             state: state.cloned(),
         };
-        let goes_on = ask(&self.send, step) && !self.stop.load(Ordering::Relaxed);
-        if goes_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        let goes_on = !self.is_heard || ask(&self.send, step);
+        if self.case.loading.is_some() {
+            // The curve is there already, and is kept.
+            self.is_heard = goes_on;
+            return self.after(Ok(()));
+        }
+        match goes_on && !self.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Continue(()),
+            false => ControlFlow::Break(()),
+        }
     }
 }

@@ -112,7 +112,7 @@ def run(
     on_stage: Callable[[str], Any],
     on_warning: Callable[[str], Any],
     on_step: Callable[[Step], bool],
-) -> None: ...
+) -> Optional[str]: ...
 def run_solid(
     case: SolidCase,
     start: Optional[State],

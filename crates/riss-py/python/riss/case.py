@@ -99,7 +99,7 @@ class Case(_Written):
 
         ``on_step``: called with each :class:`Step` when it is done. ``False`` ends the run there. A :class:`Case` takes
         over from the next step on: its loads, materials and settings, with the cracks as they have grown. Anything else
-        goes on.
+        goes on. With cohesive cracks the curve is followed first; ``False`` then wants no more of its states with fields.
 
         ``progress``: a progress bar; by default where a terminal or a notebook shows it.
 
@@ -125,7 +125,8 @@ class Case(_Written):
 
                 state = None if start is None else start._state
                 folder = None if out is None else Path(out)
-                _riss.run(case._case, state, folder, threads, shown.stage, run.warnings.append, done)
+                text = _riss.run(case._case, state, folder, threads, shown.stage, run.warnings.append, done)
+                run.record = {} if text is None else json.loads(text)
             case, start = relay.successor, relay.state
         return run
 

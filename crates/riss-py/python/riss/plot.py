@@ -117,7 +117,7 @@ def front(
     return ax
 
 
-def load_curve(run: SolidRun, ax: Optional[Axes] = None, **style: Any) -> Axes:
+def load_curve(run: Union[Run, SolidRun], ax: Optional[Axes] = None, **style: Any) -> Axes:
     """Load over displacement of cohesive cracks, with the states that have fields as dots."""
     ax = _axes(ax)
     curve = run.load_curve

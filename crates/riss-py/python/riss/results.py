@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from . import _riss
+from .loading import Loaded
 
 if TYPE_CHECKING:
     import meshio
@@ -237,10 +238,11 @@ class Step:
         return f"<riss.Step {self.number}: {len(self.tips)} tips, {self.record['nodes']} nodes>"
 
 
-class Run:
-    """All steps of a run."""
+class Run(Loaded):
+    """All steps of a run; of cohesive cracks about ten states of loading, with the numbers of their points on the load curve."""
 
     def __init__(self) -> None:
+        self.record: dict[str, Any] = {}
         self.steps: list[Step] = []
         #: What deserved a second look, over all steps.
         self.warnings: list[str] = []
@@ -252,7 +254,10 @@ class Run:
 
     @property
     def end(self) -> Optional[dict[str, Any]]:
-        """Why growth ended: ``kind`` and ``reason``."""
+        """Why growth or loading ended: ``kind`` and ``reason``."""
+        loading = self.record.get("loading")
+        if loading is not None:
+            return loading["end"]
         return self.last.end if self.steps else None
 
     def tip(self, crack: Union[None, int, str] = None, end: Optional[str] = None) -> dict[str, Any]:
@@ -275,9 +280,11 @@ class Run:
         return {name: _column([row[name] for row in rows], name) for name in header}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """:meth:`history` as a table."""
+        """Cohesive cracks: the load curve. Else :meth:`history` as a table."""
         import pandas
 
+        if self.load_curve:
+            return pandas.DataFrame(self.load_curve).astype({"step": int})
         return pandas.DataFrame(self.history())
 
     def __repr__(self) -> str:

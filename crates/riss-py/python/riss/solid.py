@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from . import _riss
+from .loading import Loaded
 from .results import State
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ class SolidStep:
         return f"<riss.SolidStep {self.number}: {len(self.fronts)} fronts, {self.record['nodes']} nodes>"
 
 
-class SolidRun:
+class SolidRun(Loaded):
     """All that a run of a solid found.
 
     Fronts, fields and cracks are those of :attr:`shown`: the last step of growth, the state of the greatest load of
@@ -209,27 +210,6 @@ class SolidRun:
         """Why growth or loading ended: ``kind`` and ``reason``; none in a static run or one that was stopped."""
         loading = self.record.get("loading")
         return self.record.get("growth_end") if loading is None else loading["end"]
-
-    @cached_property
-    def load_curve(self) -> dict[str, np.ndarray]:
-        """Columns of ``load_curve.csv``, from rest: ``step``, ``load_factor``, ``displacement``, ``load``, energies.
-
-        Empty without cohesive cracks.
-        """
-        points = self.record.get("load_curve") or []
-        return {} if not points else {name: np.array([p[name] for p in points], dtype=float) for name in points[0]}
-
-    @property
-    def peak(self) -> Optional[dict[str, float]]:
-        """The point of the load curve with the greatest load; none without cohesive cracks."""
-        loading = self.record.get("loading")
-        return None if loading is None else loading["peak"]
-
-    @property
-    def dissipated_energy(self) -> Optional[float]:
-        """By cohesive cracks until the end [stress·length³]; none without."""
-        loading = self.record.get("loading")
-        return None if loading is None else loading["dissipated_energy"]
 
     def history(self) -> dict[str, np.ndarray]:
         """Columns over the steps of growth.

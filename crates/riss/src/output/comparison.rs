@@ -257,6 +257,6 @@ mod tests {
             (found.only_in_first.as_slice(), found.only_in_second.as_slice()),
             (&["a".into()][..], &["b".into()][..])
         );
-        assert!(found.cracks.is_empty() && !found.agrees(1.0, 1.0));
+        assert!(found.cracks.is_empty() && !found.agrees(&Tolerances { path: 1.0, k: 1.0, load: 1.0 }));
     }
 }

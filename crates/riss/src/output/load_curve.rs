@@ -1,7 +1,7 @@
 //! The load curve of cohesive cracks, in results and as a table.
 
 use super::results::finite;
-use crate::analysis::{GrownSurface, GrowthEnd, LoadPoint};
+use crate::analysis::{GrownSurface, GrowthEnd, LoadPoint, PlaneLoadingRecord};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -73,6 +73,13 @@ impl LoadCurvePoint {
 /// Points as results have them.
 pub(super) fn load_curve(curve: &[LoadPoint]) -> Vec<LoadCurvePoint> {
     curve.iter().enumerate().map(|(step, point)| LoadCurvePoint::new(step, point)).collect()
+}
+
+/// `loading` and `load_curve` as `results.json` has them, as text; none if the curve has no peak.
+pub fn loading_json(record: &PlaneLoadingRecord) -> Option<String> {
+    let curve = load_curve(&record.curve);
+    let loading = LoadingResults::new(&curve, record.peak, &record.end)?;
+    Some(serde_json::json!({ "loading": loading, "load_curve": curve, "growth_end": record.growth_end }).to_string())
 }
 
 /// The curve as a table.

@@ -7,5 +7,6 @@ mod free_motion;
 mod loads;
 mod nodal_integration;
 mod patch;
+mod plane_cohesive;
 mod round_bodies;
 mod supports;
