@@ -173,5 +173,7 @@ mod tests {
             assert!(knots.windows(2).all(|w| w[0] < w[1]), "{n}: {knots:?}");
         }
         assert_eq!(knots(21), [0, 8, 10, 13, 21]);
+        assert_eq!(even_knots(7), [0, 2, 4, 7]);
+        assert_eq!(even_knots(1), [0, 1]);
     }
 }

@@ -105,3 +105,70 @@ fn a_crack_may_run_close_to_the_boundary_it_starts_from() {
     let shallow = crack("path = [[0, 8], [0.05, 12]]");
     assert_eq!(shallow.ends, [Mouth, Tip]);
 }
+
+const LAW: &str = "material.cohesive = { strength = 3, fracture_energy = 0.1 }\n";
+
+/// Problems of a case with a crack, as `key: message`.
+fn problems(head: &str, crack: &str) -> Vec<String> {
+    let mut template = template();
+    template.head = head.into();
+    template.geometry += &format!("[[crack]]\n{crack}\n");
+    let text = template.text().replace("[material]\n", "").replace("young", "material.young");
+    let text = text.replace("poisson", "material.poisson").replace("plane", "material.plane");
+    let read = riss::case::Case::parse(&text, "case.toml".as_ref(), &[]);
+    let all = read.map(|_| ()).err().map_or(vec![], |errors| errors.problems);
+    all.iter().map(|p| format!("{}: {}", p.key, p.message)).collect()
+}
+
+#[test]
+fn cohesive_cracks_get_vertices_where_notches_end() {
+    let mut template = template();
+    template.head = "loading.stop_load = 0.1".into();
+    template.geometry += "[[crack]]\ncohesive = true\npath = [[0, 8], [4, 8], [4, 9], [6, 9]]\n\
+        notch = [{ lower = [-1, 7], upper = [1, 9] }, { lower = [3.5, 7.5], upper = [4.5, 8.25] }]\n";
+    let text =
+        template.text().replace("young = 1\n", "young = 1\ncohesive = { strength = 3, fracture_energy = 0.1 }\n");
+    let case = riss::case::Case::parse(&text, "case.toml".as_ref(), &[]).unwrap();
+    let found: Vec<(f64, f64)> = case.model.cracks[0].vertices.iter().map(|p| (p.x, p.y)).collect();
+    assert_eq!(found, [(0.0, 8.0), (1.0, 8.0), (3.5, 8.0), (4.0, 8.0), (4.0, 8.25), (4.0, 9.0), (6.0, 9.0)]);
+    assert_eq!(case.loading.unwrap().stop_load, 0.1);
+    let crack = case.model.cohesive_crack(0).unwrap();
+    let midpoints = case.model.cracks[0].segments().map(|(a, b)| (a + b) * 0.5);
+    assert_eq!(midpoints.map(|p| crack.is_notch(p)).collect::<Vec<_>>(), [true, false, true, true, false, false]);
+}
+
+#[test]
+fn what_does_not_go_with_cohesive_cracks_is_refused() {
+    let crack = "path = [[0, 8], [3, 8]]\ncohesive = true";
+    assert_eq!(problems("", crack), ["crack[0].cohesive: there is no law for it"]);
+    assert_eq!(problems(LAW, "path = [[0, 8], [3, 8]]"), ["material.cohesive: no crack is cohesive"]);
+    assert_eq!(problems("loading.steps = 5", "path = [[0, 8], [3, 8]]"), ["loading: no crack is cohesive"]);
+    let notch = "path = [[0, 8], [3, 8]]\nnotch = [{ lower = [0, 7], upper = [1, 9] }]";
+    assert_eq!(problems("", notch), ["crack[0].notch: only a cohesive crack has notches"]);
+    let flat = format!("{crack}\nnotch = [{{ lower = [0, 9], upper = [1, 9] }}]");
+    assert_eq!(
+        problems(LAW, &flat),
+        ["crack[0].notch[0].upper: every coordinate must be greater than that of `lower`"]
+    );
+    let all = format!(
+        "{LAW}constraints = 'lagrange-multipliers'\ncontact = {{}}\naccuracy.K_percent = 1\n\
+         approximation.enrichment.kind = 'extrinsic-mls'\ngrowth = {{ law = 'equal', stop.cycles = 3 }}"
+    );
+    let found = problems(&all, &format!("{crack}\npressure = 1"));
+    for key in [
+        "constraints",
+        "contact",
+        "accuracy",
+        "approximation.enrichment.kind",
+        "growth.law",
+        "growth.stop",
+        "crack[0].pressure",
+    ] {
+        assert!(found.iter().any(|p| p.starts_with(&format!("{key}: "))), "{key}: {found:#?}");
+    }
+    let particles = problems(&format!("{LAW}method = 'cracking-particles'"), crack);
+    assert!(particles.iter().any(|p| p.starts_with("method: crack[0] is cohesive")), "{particles:?}");
+    let weak =
+        problems("material.cohesive = { strength = 0, fracture_energy = -1 }\nloading.largest_displacement = 0", crack);
+    assert_eq!(weak.len(), 3, "{weak:?}");
+}
