@@ -1,9 +1,9 @@
-//! How a solid with cohesive cracks is loaded.
+//! How a body with cohesive cracks is loaded.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How far the load of a solid with cohesive cracks is followed. All loads and prescribed displacements grow by one factor,
+/// How far the load of a body with cohesive cracks is followed. All loads and prescribed displacements grow by one factor,
 /// which rises and falls so that the cracks open.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
