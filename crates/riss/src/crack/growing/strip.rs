@@ -122,6 +122,12 @@ impl<'a> Strips<'a> {
                 let beyond = [points[k].from, line[i].at].map(|p| self.push(p + out));
                 let place = |list: &mut Vec<u32>, v| if sign > 0.0 { list.insert(0, v) } else { list.push(v) };
                 place(&mut old, beyond[0]);
+                // A vertex just before the boundary would leave an edge that counts as part of it: the next strip would begin
+                // beside it, with a slit between.
+                let reach = line[i].at + out.normalize() * self.limits.shortest;
+                if first_cut(self.body, line[i].at, reach).is_some() {
+                    new.remove(if sign > 0.0 { 0 } else { new.len() - 1 });
+                }
                 place(&mut new, beyond[1]);
             }
         }

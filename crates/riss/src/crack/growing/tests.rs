@@ -87,6 +87,38 @@ fn polygon_area(front: &GrowingFront) -> f64 {
     0.5 * (0..n).map(|k| (points[k] - points[0]).cross(&(points[(k + 1) % n] - points[0]))).sum::<Vector3>().norm()
 }
 
+/// Ends of fronts that drift a little off the boundary leave no slit along it: what of the rim is no front lies on the
+/// boundary.
+#[test]
+fn ends_that_drift_inwards_stay_on_the_boundary() {
+    let body = block();
+    let size = body.bounds().size().norm();
+    for (drift, bow) in [1e-12, 2e-5, 4e-5, 1e-3, 0.03].into_iter().flat_map(|d| [-0.1, 0.1].map(|b| (d, b))) {
+        let corners = [[-11.0, -1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 5.0, 0.0], [-11.0, 5.0, 0.0]];
+        let mut crack = GrowingCrack::new(&polygon(&corners), &body).unwrap();
+        for n in 1..=3 {
+            let step = |p: &FrontPoint| {
+                let side = p.position.y / 2.0 - 1.0;
+                let direction = v(0.5 + bow * side * side, -drift * side, 0.002);
+                FrontStep { direction: direction.normalize(), length: direction.norm() }
+            };
+            crack = crack.advanced(&all(&crack, step), &EdgeLimits::of_increment(0.5), &body, &[]).unwrap();
+            check(&crack, &body);
+            let [front] = crack.fronts() else { panic!("{drift} {bow} {n}") };
+            let edges: BTreeSet<[u32; 2]> =
+                crack.triangles().iter().flat_map(|t| (0..3).map(|k| [t[k], t[(k + 1) % 3]])).collect();
+            let of_front: BTreeSet<[u32; 2]> = front.vertices.windows(2).map(|w| [w[1], w[0]]).collect();
+            for [a, b] in edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]) && !of_front.contains(&[*a, *b])) {
+                for p in [a, b].map(|k| crack.vertices()[*k as usize]) {
+                    assert!(body.signed_distance(p).abs() < 1e-9 * size, "{drift} {bow} {n}: {p}");
+                }
+            }
+            let seen = CrackSurface::new(&CrackShape::Triangles(crack.mesh()), &body).unwrap();
+            assert_eq!(seen.fronts.len(), 1, "{drift} {bow} {n}");
+        }
+    }
+}
+
 #[test]
 fn a_penny_stays_a_circle() {
     let body = block();
