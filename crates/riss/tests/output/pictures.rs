@@ -50,6 +50,7 @@ pub fn model() -> Model {
             BoundaryLoad { part: Some(hole), value: TractionValue::Pressure(50.0.into()) },
         ],
         crack_face_loads: vec![],
+        cohesive: None,
         contact: None,
         body_force: Some(BodyForce([0.0.into(), (-9.81).into()])),
         point_loads: vec![PointLoad { at: corner(4.0, 2.5), force: corner(3.0, 0.0) }],

@@ -124,7 +124,7 @@ fn fields(n: usize) -> Fields {
     let positions: Vec<_> = (0..=8).map(|k| Vector2::new(k as f64 / 8.0 - 1.0, 0.0)).collect();
     let face =
         |side| positions.iter().map(|p| FIELD.displacement(&MATERIAL, p + Vector2::new(0.0, side))).collect::<Vec<_>>();
-    fields.crack_faces.push(CrackFaces { left: face(SIDE), right: face(-SIDE), positions });
+    fields.crack_faces.push(CrackFaces { left: face(SIDE), right: face(-SIDE), positions, traction: vec![] });
     fields
 }
 

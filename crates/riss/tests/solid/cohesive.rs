@@ -185,3 +185,28 @@ fn growth_ends_with_its_steps() {
     );
     assert_eq!((record.end.kind, record.surfaces.len()), (GrowthEndKind::StepsDone, 2), "{:?}", record.end);
 }
+
+/// A bar that is bent: ahead of the front the stress falls to nothing and into compression, where directions are noise. The
+/// surface stays plane, and the load is that of the whole plane as far as its nodes are the same.
+#[test]
+fn a_strip_grows_straight_in_bending() {
+    let text = |far: f64, growth: &str| {
+        format!(
+            "method = 'collocation'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = 30000, poisson = 0.2, \
+             cohesive = {{ strength = 3, fracture_energy = 0.1 }} }}\n\
+             geometry.box = {{ lower = [0, 0, 0], upper = [12, 6, 30] }}\nnodes.spacing = 2\n\
+             load = [{{ on = 'z-max', traction = [0, 0, '(6 - x)/6'] }}, {{ on = 'z-min', traction = [0, 0, '(x - 6)/6'] }}]\n\
+             crack = [{{ cohesive = true, polygon = [[0, 0, 14], [{far}, 0, 14], [{far}, 6, 14], [0, 6, 14]] }}]\n\
+             loading.stop_load = 0.5\n{growth}"
+        )
+    };
+    let (whole, _) = load(&text(12.0, ""));
+    let growth =
+        "growth = { steps = 40, increment = 3, criterion.largest-principal-stress = { tensile_strength = 3 } }";
+    let (record, steps) = load(&text(4.0, growth));
+    assert!(record.surfaces.len() > 1, "{:?}", record.end);
+    let surface = &steps[steps.len() - 1].model.cracks[0].surface;
+    assert!(surface.vertices().iter().all(|p| (p.z - 14.0).abs() < 1e-6), "{:?}", record.surfaces);
+    let [peak, expected] = [&record, &whole].map(|r| r.curve[r.peak].load);
+    assert!((peak / expected - 1.0).abs() < 0.05, "{peak} {expected}");
+}

@@ -11,7 +11,7 @@ use super::super::solid_growth::{SolidGrowthSettings, SolidGrowthState};
 use super::super::solid_static::{SolidSettings, Solved};
 use super::LoadingRecord;
 use crate::analysis::cohesive::LoadPoint;
-use crate::crack::{CrackDefect, EdgeLimits};
+use crate::crack::{CrackDefect, EdgeLimits, FrontPoint, FrontStep};
 use crate::error::Result;
 use crate::material::CohesiveLaw;
 use crate::math::Vector3;
@@ -20,7 +20,8 @@ use crate::nodes::solid::{Region, SpacingPlan};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A front moves where the stress ahead is this share of the strength, or of the largest ahead of all fronts if that is less.
+/// A front moves, and turns across the stress, where the stress ahead is this share of the strength. Where it is less, as at
+/// the compressed side of a beam, its direction is noise of the nodes: a front that has to move goes straight on.
 const NEAR: f64 = 0.8;
 /// Fronts this near to the place that reached its strength move in any case, over the increment.
 const AT_PLACE: f64 = 1.5;
@@ -133,12 +134,17 @@ impl<'a> Growing<'a> {
     ) -> Result<()> {
         let limits = EdgeLimits::of_increment(self.growth.increment);
         let strips = self.surfaces[self.surfaces.len() - 1].strips;
-        let largest = self.by_strength(solved, 1.0)?.largest.unwrap_or(0.0);
-        let near = NEAR * if place.is_some() { largest.min(law.strength) } else { largest };
-        let mut halt = format!("the largest principal stress ahead of them is {largest:.3e}");
-        let (mut n, mut place) = (0, place);
-        while largest > 0.0 && n < STRIPS && strips + n < self.growth.steps {
-            let drive = self.drive(solved, near, place)?;
+        let (mut n, mut most, mut halt) = (0, 0.0, String::new());
+        while n < STRIPS && strips + n < self.growth.steps {
+            let mut drive = by_strength(&self.model, solved, &self.state.cracks, self.growth.increment, law.strength)?;
+            if n == 0 {
+                most = drive.largest.unwrap_or(0.0);
+                halt = format!("the largest principal stress ahead of them is {:.3e}", most * law.strength);
+            }
+            match place {
+                Some(place) => self.choose(&mut drive, (n == 0).then_some(place)),
+                None => drive.move_from(NEAR * most, self.growth.increment),
+            }
             if drive.n_moving() == 0 {
                 break;
             }
@@ -156,7 +162,6 @@ impl<'a> Growing<'a> {
             }
             (self.state, self.model) = (next, model);
             n += 1;
-            place = None;
         }
         self.halt = (n == 0).then_some(halt);
         if let Some(last) = self.surfaces.last_mut() {
@@ -169,26 +174,27 @@ impl<'a> Growing<'a> {
         Ok(())
     }
 
-    fn by_strength(&self, solved: &Solved, strength: f64) -> Result<Drive> {
-        by_strength(&self.model, solved, &self.state.cracks, self.growth.increment, strength)
-    }
-
-    /// How the fronts of cohesive cracks move where the stress reaches `near`, and at `place`.
-    fn drive(&self, solved: &Solved, near: f64, place: Option<Vector3>) -> Result<Drive> {
+    /// Moves the fronts where the stress is near the strength; around a place that reached it in any case, and along with
+    /// that where there is about as much stress.
+    fn choose(&self, drive: &mut Drive, place: Option<Vector3>) {
         let increment = self.growth.increment;
-        let mut drive = self.by_strength(solved, near)?;
-        let Some(place) = place else { return Ok(drive) };
-        for (crack, of_crack) in self.state.cracks.iter().zip(&mut drive.steps) {
-            for (front, steps) in crack.fronts().iter().zip(of_crack) {
-                for (point, step) in front.line.points.iter().zip(steps) {
-                    let is_at = (place - point.position).norm() <= AT_PLACE * increment;
-                    if is_at && step.direction != Vector3::zeros() {
-                        step.length = increment;
-                    }
-                }
+        let is_at = |p: &FrontPoint| place.is_some_and(|place| (place - p.position).norm() <= AT_PLACE * increment);
+        let mut vertices = vec![];
+        for (c, crack) in self.state.cracks.iter().enumerate().filter(|(c, _)| self.model.cohesive_crack(*c).is_some())
+        {
+            for (f, front) in crack.fronts().iter().enumerate() {
+                vertices.extend(front.line.points.iter().enumerate().map(|(k, p)| ((c, f, k), p)));
             }
         }
-        Ok(drive)
+        let around = vertices.iter().filter(|(_, p)| is_at(p)).map(|((c, f, k), _)| drive.ratios[*c][*f][*k]);
+        let near = NEAR * around.reduce(f64::max).unwrap_or(1.0).min(1.0);
+        for ((c, f, k), point) in vertices {
+            let (ratio, step) = (drive.ratios[c][f][k], &mut drive.steps[c][f][k]);
+            if ratio < NEAR {
+                *step = FrontStep::ahead(point, 0.0);
+            }
+            step.length = if is_at(point) || (ratio > 0.0 && ratio >= near) { increment } else { 0.0 };
+        }
     }
 
     /// Number of strips, if there may be no more.

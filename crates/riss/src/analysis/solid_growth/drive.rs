@@ -27,6 +27,8 @@ const INSIDE: f64 = 0.1;
 pub(in crate::analysis) struct Drive {
     /// For each crack, each front, each vertex.
     pub steps: Vec<Vec<Vec<FrontStep>>>,
+    /// Largest principal stress ahead over the strength, in the same order; zero where it is not known.
+    pub ratios: Vec<Vec<Vec<f64>>>,
     /// Largest stress over the strength, or largest equivalent factor; none if it is known nowhere.
     pub largest: Option<f64>,
 }
@@ -35,6 +37,13 @@ impl Drive {
     /// Number of vertices that move.
     pub fn n_moving(&self) -> usize {
         self.steps.iter().flatten().flatten().filter(|s| s.length > 0.0).count()
+    }
+
+    /// Moves the vertices whose stress is at least this share of the strength.
+    pub fn move_from(&mut self, ratio: f64, increment: f64) {
+        for (step, own) in self.steps.iter_mut().flatten().flatten().zip(self.ratios.iter().flatten().flatten()) {
+            step.length = if *own > 0.0 && *own >= ratio { increment } else { 0.0 };
+        }
     }
 }
 
@@ -48,14 +57,15 @@ pub(in crate::analysis) fn by_strength(
 ) -> Result<Drive> {
     let mut drive = Drive::default();
     for (c, crack) in cracks.iter().enumerate() {
-        let mut of_crack = vec![];
+        let (mut of_crack, mut ratios) = (vec![], vec![]);
         let stays = model.cohesive.is_some() && model.cohesive_crack(c).is_none();
         for front in crack.fronts() {
             if stays {
                 of_crack.push(vec![FrontStep::none(); front.line.points.len()]);
+                ratios.push(vec![0.0; front.line.points.len()]);
                 continue;
             }
-            let mut of_front = vec![];
+            let (mut of_front, mut of_points) = (vec![], vec![]);
             let n = front.line.points.len();
             for (k, point) in front.line.points.iter().enumerate() {
                 let inward = match (front.line.is_closed, k) {
@@ -65,9 +75,11 @@ pub(in crate::analysis) fn by_strength(
                 };
                 let from = FrontPoint { position: point.position + point.tangent * inward, ..*point };
                 let mean = mean_ahead(model, solved, &from, increment)?;
+                of_points.push(0.0);
                 let step = mean.map_or_else(FrontStep::none, |stress| {
                     let principal = LargestPrincipal::of(&stress);
                     let ratio = principal.ratio(tensile_strength);
+                    of_points[k] = ratio;
                     drive.largest = Some(drive.largest.map_or(ratio, |l| l.max(ratio)));
                     let length = if ratio >= 1.0 { increment } else { 0.0 };
                     FrontStep { direction: steady(point, principal.growth_direction(point)), length }
@@ -75,8 +87,10 @@ pub(in crate::analysis) fn by_strength(
                 of_front.push(step);
             }
             of_crack.push(of_front);
+            ratios.push(of_points);
         }
         drive.steps.push(of_crack);
+        drive.ratios.push(ratios);
     }
     Ok(drive)
 }
@@ -147,7 +161,7 @@ pub(super) fn by_factors(
         };
         crack.fronts().iter().zip(known).map(of_front).collect()
     });
-    Drive { steps: steps.collect(), largest }
+    Drive { steps: steps.collect(), largest, ..Drive::default() }
 }
 
 /// Distance to a front, and the length along it of the nearest point.
