@@ -160,7 +160,8 @@ impl CohesiveLaw {
             Branch::Softening => {
                 let at = effective.max(self.first_opening());
                 let [t, derivative, _] = self.softening(at);
-                (t / at, if effective < at { 0.0 } else { (derivative - t / at) / at })
+                // Also where round-off has it closed a little: it opens.
+                (t / at, (derivative - t / at) / at)
             }
             Branch::Secant(largest) => (self.softening(largest)[0] / largest, 0.0),
         };

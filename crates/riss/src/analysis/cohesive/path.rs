@@ -344,7 +344,6 @@ impl<'a> Path<'a> {
             let (first, strength) = (self.law.first_opening(), self.law.strength);
             let [n, s, t] = self.condensed.of_pair(pair, &tractions);
             self.state.is_open[pair] = true;
-            self.state.history[pair] = first;
             // Whatever the pair bears when it opens, it bears still.
             let opening = if self.law.shear_ratio == 0.0 {
                 self.state.shear[pair] = [s, t];
@@ -355,6 +354,8 @@ impl<'a> Path<'a> {
             };
             let columns = self.condensed.columns[pair]..self.condensed.columns[pair + 1];
             columns.zip(opening).for_each(|(column, w)| self.state.openings[column] = w);
+            // Round-off must not take it for a pair that has closed a little.
+            self.state.history[pair] = self.effective(pair, &self.state.openings);
         }
     }
 }
