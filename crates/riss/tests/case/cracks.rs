@@ -166,6 +166,11 @@ fn what_does_not_go_with_cohesive_cracks_is_refused() {
     ] {
         assert!(found.iter().any(|p| p.starts_with(&format!("{key}: "))), "{key}: {found:#?}");
     }
+    let started = problems(
+        &format!("{LAW}growth.seeding = {{ length = 0.5, number = 1 }}\nconstraints = 'lagrange-multipliers'"),
+        "path = [[0, 8], [3, 8]]",
+    );
+    assert_eq!(started, ["constraints: cracks that start are cohesive: faces are joined in a definite matrix"]);
     let particles = problems(&format!("{LAW}method = 'cracking-particles'"), crack);
     assert!(particles.iter().any(|p| p.starts_with("method: crack[0] is cohesive")), "{particles:?}");
     let weak =

@@ -17,7 +17,7 @@ use super::warnings::Warning;
 use crate::crack::CrackPath;
 use crate::error::Result;
 use crate::math::Vector2;
-use crate::model::Model;
+use crate::model::{CohesiveCrack, Model};
 use crate::system::crack_faces::joining_pressure;
 use crate::system::galerkin::displacement_gradients;
 use crate::system::{Discretization, Solution};
@@ -59,8 +59,14 @@ pub fn plane_loading(
     let elastic = Model { cohesive: None, ..model.clone() };
     let mut ways = Ways { observer, cracks: vec![] };
     let Some(end) = crack_growth(&elastic, settings, growth, from, &mut ways)? else { return Ok(None) };
-    let cracks = ways.cracks.into_iter().map(|c| CrackPath { name: c.name, vertices: c.path, ends: c.ends }).collect();
-    let record = traced(&Model { cracks, ..model.clone() }, settings, loading, observer)?;
+    let cracks: Vec<CrackPath> =
+        ways.cracks.into_iter().map(|c| CrackPath { name: c.name, vertices: c.path, ends: c.ends }).collect();
+    let mut cohesive = model.cohesive.clone();
+    if let Some(cohesive) = &mut cohesive {
+        // Cracks that have started are cohesive all along.
+        cohesive.cracks.resize(cracks.len(), Some(CohesiveCrack { notches: vec![] }));
+    }
+    let record = traced(&Model { cracks, cohesive, ..model.clone() }, settings, loading, observer)?;
     Ok(record.map(|r| PlaneLoadingRecord { growth_end: Some(end), ..r }))
 }
 

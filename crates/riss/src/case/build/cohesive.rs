@@ -12,7 +12,7 @@ use crate::model::{CohesiveCrack, CohesiveModel};
 use crate::system::ConstraintMethod;
 
 /// Keys of `[growth]` that say nothing to cohesive cracks, whose way alone is sought.
-const OTHER_GROWTH: [&str; 3] = ["law", "seeding", "stop"];
+const OTHER_GROWTH: [&str; 2] = ["law", "stop"];
 
 /// What of a crack is cohesive, if anything is.
 pub(super) fn crack(crack: &schema::Crack, key: &str, report: &mut Report) -> Option<CohesiveCrack<2>> {
@@ -52,15 +52,25 @@ pub(super) fn cohesive(
     report: &mut Report,
 ) -> Option<(CohesiveModel<2>, LoadingSettings)> {
     let found = file.crack.iter().position(|c| c.cohesive);
-    let (index, law) = law_of(found, file.material.cohesive.as_ref(), file.loading.is_some(), report)?;
-    refuse(file, index, report);
+    let law = match (&file.material.cohesive, found) {
+        (Some(law), None) if file.growth.as_ref().is_some_and(|g| g.seeding.is_some()) => {
+            refuse(file, "cracks that start are cohesive", report);
+            *law
+        }
+        (law, found) => {
+            let (index, law) = law_of(found, law.as_ref(), file.loading.is_some(), report)?;
+            refuse(file, &format!("crack[{index}] is cohesive"), report);
+            law
+        }
+    };
     let (law, loading) = checked(&law, file.loading, report)?;
     Some((CohesiveModel { law, cracks }, loading))
 }
 
 /// Reports what a case with cohesive cracks cannot have.
-fn refuse(file: &CaseFile, index: usize, report: &mut Report) {
-    let because = format!("crack[{index}] is cohesive");
+///
+/// - `because`: which crack is cohesive
+fn refuse(file: &CaseFile, because: &str, report: &mut Report) {
     if file.method != Method::ElementFreeGalerkin {
         let message = format!("{because}, which cracking particles cannot be");
         report.error("method", message).allow("element-free-galerkin, or collocation in space");
@@ -70,26 +80,26 @@ fn refuse(file: &CaseFile, index: usize, report: &mut Report) {
         ConstraintMethod::LagrangeMultipliers
         | ConstraintMethod::ModifiedVariational
         | ConstraintMethod::FiniteElementCoupled => {
-            let message = format!("{because}: its faces are joined in a definite matrix");
+            let message = format!("{because}: faces are joined in a definite matrix");
             report.error("constraints", message).allow("nitsche, penalty");
         }
     }
     if !matches!(file.approximation.enrichment.kind, EnrichmentKind::Automatic | EnrichmentKind::None) {
-        let message = format!("{because}: the stresses at its tip are finite");
+        let message = format!("{because}: stresses at tips are finite");
         report.error("approximation.enrichment.kind", message).allow("none");
     }
     for (key, is_there) in [("accuracy", file.accuracy.is_some()), ("contact", file.contact.is_some())] {
         if is_there {
             let message = match key {
-                "contact" => format!("{because}: faces that touch are kept apart by its law"),
-                _ => format!("{because}: it has no stress intensity factors to be accurate"),
+                "contact" => format!("{because}: faces that touch are kept apart by the law"),
+                _ => format!("{because}: there are no stress intensity factors to be accurate"),
             };
             report.error(key, message).suggest("take it out");
         }
     }
     for key in OTHER_GROWTH.map(|key| format!("growth.{key}")) {
         if report.document.says(&key) {
-            let message = format!("{because}: [growth] finds its way, and how far it breaks its law says");
+            let message = format!("{because}: [growth] finds the way, and the law says how far it breaks");
             report.error(key, message).suggest("leave it out");
         }
     }
