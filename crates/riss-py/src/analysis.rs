@@ -5,10 +5,11 @@ use crate::error;
 use crate::step::{State, Step};
 use pyo3::prelude::*;
 use riss::analysis::{
-    GrowthEndKind, GrowthState, LoadPoint, Observer, Stage, StaticResult, Warning, crack_growth, linear_static, plane_loading,
+    GrowthEndKind, GrowthState, LoadPoint, Observer, Stage, StaticResult, Warning, crack_growth, linear_static,
+    plane_loading,
 };
-use riss::output::results::StepResults;
 use riss::output::load_curve::loading_json;
+use riss::output::results::StepResults;
 use riss::output::{OutputOptions, PlaneLoadingWriter, RunInfo, RunSource, RunStatus, RunWriter};
 use std::io;
 use std::ops::ControlFlow;
@@ -143,12 +144,11 @@ impl Job {
         let Self { case, start, out, .. } = self;
         let files = |e: io::Error| Failure::Files(out.clone().unwrap_or_default(), e);
         let writer = out.as_deref().map(|dir| Writer::new(dir, &case, start.as_ref())).transpose().map_err(files)?;
-        let mut listener = Listener { case: &case, send, stop, writer, clock: Clock::new(), is_heard: true, problem: None };
+        let mut listener =
+            Listener { case: &case, send, stop, writer, clock: Clock::new(), is_heard: true, problem: None };
         let (model, settings) = (&case.model, &case.settings);
         let outcome = match (&case.loading, &case.growth) {
-            (Some(loading), growth) => {
-                plane_loading(model, settings, loading, growth.as_ref(), start, &mut listener)
-            }
+            (Some(loading), growth) => plane_loading(model, settings, loading, growth.as_ref(), start, &mut listener),
             (None, None) => linear_static(model, settings, &mut listener).map(|_| None),
             (None, Some(growth)) => crack_growth(model, settings, growth, start, &mut listener).map(|_| None),
         };
@@ -269,7 +269,7 @@ impl Listener<'_> {
 impl Observer for Listener<'_> {
     fn load_curve(&mut self, curve: &[LoadPoint]) -> ControlFlow<()> {
         let written = match &self.writer {
-            Some(Writer::Loading(writer)) if curve.len() % CURVE_PACE == 0 => writer.write_curve(curve),
+            Some(Writer::Loading(writer)) if curve.len().is_multiple_of(CURVE_PACE) => writer.write_curve(curve),
             _ => Ok(()),
         };
         self.after(written)
@@ -329,13 +329,12 @@ impl Observer for Listener<'_> {
             settings: Arc::new(self.case.settings.clone()),
             state: state.cloned(),
         };
-        let goes_on = !self.is_heard || ask(&self.send, step);
         if self.case.loading.is_some() {
             // The curve is there already, and is kept.
-            self.is_heard = goes_on;
+            self.is_heard = self.is_heard && ask(&self.send, step);
             return self.after(Ok(()));
         }
-        match goes_on && !self.stop.load(Ordering::Relaxed) {
+        match ask(&self.send, step) && !self.stop.load(Ordering::Relaxed) {
             true => ControlFlow::Continue(()),
             false => ControlFlow::Break(()),
         }

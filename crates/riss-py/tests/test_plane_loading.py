@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import riss
 
 CASE = Path(__file__).parents[3] / "cases" / "double-edge-notched-plane" / "case.toml"

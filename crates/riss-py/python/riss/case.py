@@ -99,7 +99,8 @@ class Case(_Written):
 
         ``on_step``: called with each :class:`Step` when it is done. ``False`` ends the run there. A :class:`Case` takes
         over from the next step on: its loads, materials and settings, with the cracks as they have grown. Anything else
-        goes on. With cohesive cracks the curve is followed first; ``False`` then wants no more of its states with fields.
+        goes on. With cohesive cracks the curve is followed first; ``False`` then wants no more of its states with
+        fields.
 
         ``progress``: a progress bar; by default where a terminal or a notebook shows it.
 

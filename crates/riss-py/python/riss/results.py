@@ -239,7 +239,10 @@ class Step:
 
 
 class Run(Loaded):
-    """All steps of a run; of cohesive cracks about ten states of loading, with the numbers of their points on the load curve."""
+    """All steps of a run.
+
+    Of cohesive cracks about ten states of loading, with the numbers of their points on the load curve.
+    """
 
     def __init__(self) -> None:
         self.record: dict[str, Any] = {}
