@@ -97,6 +97,10 @@ fn refuse(file: &CaseFile, because: &str, report: &mut Report) {
             report.error(key, message).suggest("take it out");
         }
     }
+    for (k, _) in file.crack.iter().enumerate().filter(|(_, c)| c.pressure.is_some() && !c.cohesive) {
+        let message = format!("{because}: no crack beside it can be under pressure");
+        report.error(format!("crack[{k}].pressure"), message).suggest("take it out");
+    }
     for key in OTHER_GROWTH.map(|key| format!("growth.{key}")) {
         if report.document.says(&key) {
             let message = format!("{because}: [growth] finds the way, and the law says how far it breaks");
