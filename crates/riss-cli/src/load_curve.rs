@@ -2,6 +2,7 @@
 
 use crate::table::number;
 use riss::analysis::{GrowthEnd, LoadPoint};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// The load curve is written as often as this while it is followed.
@@ -21,6 +22,17 @@ impl Pace {
             self.last = Some(Instant::now());
         }
         is_due
+    }
+}
+
+/// What to say of a run that was ended before its time.
+///
+/// - `grows`: whether its cracks grow, so that it can be gone on with
+pub fn stopped(grows: bool, dir: &Path) -> String {
+    let found = "stopped; load_curve.csv has what was found until then";
+    match grows {
+        true => format!("{found}, and riss run --resume {} goes on with the cracks as they have grown", dir.display()),
+        false => found.into(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `riss run` of a plane body with cohesive cracks.
 
-use crate::load_curve::{Pace, summary};
+use crate::load_curve::{Pace, stopped, summary};
 use crate::progress::{Progress, peak_memory_bytes};
 use crate::results::{self, RunRecord};
 use crate::resume::Resumed;
@@ -39,13 +39,7 @@ pub fn load(
     };
     let (record, files) = match follow(case, loading, from, dir, progress) {
         Ok(Some(followed)) => followed,
-        Ok(None) if case.growth.is_some() => {
-            return crate::fail(&format!(
-                "stopped; load_curve.csv has what was found until then, and riss run --resume {} goes on",
-                dir.display()
-            ));
-        }
-        Ok(None) => return crate::fail("stopped; load_curve.csv has what was found until then"),
+        Ok(None) => return crate::fail(&stopped(case.growth.is_some(), dir)),
         Err(message) => return crate::fail(&message),
     };
     if arguments.json {
