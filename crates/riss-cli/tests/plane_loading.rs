@@ -3,7 +3,8 @@
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 const BEAM: &str = r#"title = "Beam"
 rigid_motion = "mean-is-zero"
@@ -128,4 +129,32 @@ fn sweeps_have_load_curves_too() {
         .collect();
     peaks.sort_by(f64::total_cmp);
     assert!(peaks.len() == 2 && (peaks[1] / peaks[0] - 2.0).abs() < 1e-9, "{peaks:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_how_to_go_on_and_does() {
+    let folder = scratch("plane-loading-interrupted");
+    let steps = ["--set", "growth.increment=1.5", "--set", "growth.steps=12", "-q"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_riss"));
+    command.args(["run", "case.toml", "--out", "a"]).args(steps).current_dir(&folder);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("riss starts");
+    let ways = folder.join("a/restart/ways.json");
+    let start = Instant::now();
+    while !ways.is_file() {
+        assert!(start.elapsed() < Duration::from_secs(60), "it does not grow");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    assert!(killed.success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).contains("riss run --resume a goes on"), "{}", said(&output));
+    assert!(!folder.join("a/results.json").exists());
+    let on = riss(&folder, &["run", "--resume", "a", "-q"]);
+    assert_eq!(on.status.code(), Some(0), "{}", said(&on));
+    let whole = riss(&folder, &[&["run", "case.toml", "--out", "whole"], &steps[..]].concat());
+    assert_eq!(whole.status.code(), Some(0), "{}", said(&whole));
+    let [a, whole] = ["a", "whole"].map(|out| fs::read(folder.join(out).join("load_curve.csv")).expect("written"));
+    assert!(a == whole, "another curve");
 }
