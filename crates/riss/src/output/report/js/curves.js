@@ -46,7 +46,8 @@ class Curves {
     const has = (choice) => points.some((p) => (choice.when ?? ((q) => choice.of(q) !== null))(p));
     this.axes = AXES.filter((axis) => points.some((p) => axis.of(p) !== null));
     this.choices = CHOICES.filter(has);
-    this.isShown = results.steps.length > 1 && tips.length > 0;
+    // Tips of cohesive cracks have no factors, and stay where they are: the load curve has what changes.
+    this.isShown = results.steps.length > 1 && tips.length > 0 && !results.loading;
     if (!this.isShown) return;
     byId("curves").hidden = false;
     this.axisSelect = this.fill("curve-x", this.axes);
