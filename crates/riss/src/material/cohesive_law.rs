@@ -143,17 +143,9 @@ impl CohesiveLaw {
         [n.max(0.0) / size, s * weight, t * weight]
     }
 
-    /// Traction of an opening.
+    /// Traction of an opening on a given branch: smooth, whatever the opening was before.
     ///
     /// - `opening`: component along the normal, then those across it [length]
-    /// - `history`: largest effective opening before [length]
-    pub fn cohesion(&self, opening: [f64; 3], history: f64) -> Cohesion {
-        let largest = history.max(self.first_opening());
-        let is_loaded = self.effective(opening) >= largest;
-        self.cohesion_on(opening, if is_loaded { Branch::Softening } else { Branch::Secant(largest) })
-    }
-
-    /// The same on a given branch: smooth, whatever the opening was before.
     pub fn cohesion_on(&self, opening: [f64; 3], branch: Branch) -> Cohesion {
         let effective = self.effective(opening);
         let (secant, change) = match branch {
@@ -204,6 +196,13 @@ mod tests {
         })
     }
 
+    /// On the branch that a largest effective opening before leaves.
+    fn cohesion(law: &CohesiveLaw, opening: [f64; 3], history: f64) -> Cohesion {
+        let largest = history.max(law.first_opening());
+        let is_loaded = law.effective(opening) >= largest;
+        law.cohesion_on(opening, if is_loaded { Branch::Softening } else { Branch::Secant(largest) })
+    }
+
     #[test]
     fn curves_begin_at_the_strength_and_enclose_the_fracture_energy() {
         for law in laws() {
@@ -238,13 +237,13 @@ mod tests {
                 ([1.1, 0.0, 0.0], 0.2),
             ] {
                 let (opening, history) = (opening.map(|w: f64| w * scale), history * scale);
-                let found = law.cohesion(opening, history);
+                let found = cohesion(&law, opening, history);
                 for j in 0..3 {
                     let step = 1e-6 * scale;
                     let shifted = |d: f64| {
                         let mut w = opening;
                         w[j] += d;
-                        law.cohesion(w, history).traction
+                        cohesion(&law, w, history).traction
                     };
                     let (after, before) = (shifted(step), shifted(-step));
                     for i in 0..3 {
@@ -263,12 +262,12 @@ mod tests {
     fn a_pair_opens_at_its_strength_and_unloads_to_the_origin() {
         for law in laws() {
             let w = 0.6 * law.opening_scale();
-            let loaded = law.cohesion([w, 0.0, 0.0], 0.0).traction[0];
+            let loaded = cohesion(&law, [w, 0.0, 0.0], 0.0).traction[0];
             assert!((loaded / law.softening(w)[0] - 1.0).abs() < 1e-12);
-            assert!((law.cohesion([0.5 * w, 0.0, 0.0], w).traction[0] - 0.5 * loaded).abs() < 1e-15);
-            let first = law.cohesion([law.first_opening(), 0.0, 0.0], 0.0).traction[0];
+            assert!((cohesion(&law, [0.5 * w, 0.0, 0.0], w).traction[0] - 0.5 * loaded).abs() < 1e-15);
+            let first = cohesion(&law, [law.first_opening(), 0.0, 0.0], 0.0).traction[0];
             assert!((first / 3.0 - 1.0).abs() < 1e-6);
-            assert!(law.cohesion([-w, 0.0, 0.0], w).traction[0] < -100.0);
+            assert!(cohesion(&law, [-w, 0.0, 0.0], w).traction[0] < -100.0);
             assert_eq!(law.exhaustion([3.0, 0.0, 0.0]), 1.0);
             let gradient = law.exhaustion_gradient([2.0, 0.5, 1.0]);
             let of_opening = law.effective_gradient([2.0, 0.5, 1.0]);

@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 const OPENED: f64 = 0.01;
 /// Steps with fields, besides the first, that of the peak and the last.
 const PICTURES: usize = 10;
+/// Loads count as balanced if their sum is below this share of their sizes.
+const BALANCED: f64 = 0.02;
 
 /// A point of the load curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -175,6 +177,11 @@ pub(in crate::analysis) fn pictures(curve: &[LoadPoint], peak: usize) -> Vec<usi
     points.sort_unstable();
     points.dedup();
     points
+}
+
+/// Resultant of loads: half of their sum of sizes where they balance.
+pub(in crate::analysis) fn resultant(sum: f64, sizes: f64) -> f64 {
+    if sum > BALANCED * sizes { sum } else { 0.5 * sizes }
 }
 
 /// Index of the greatest load.

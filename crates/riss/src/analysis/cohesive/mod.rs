@@ -12,6 +12,6 @@ mod tangent;
 
 pub(in crate::analysis) use condensed::Condensed;
 pub use load_curve::LoadPoint;
-pub(in crate::analysis) use load_curve::{Bond, Followed, LoadMeasure, follow, peak_of, pictures};
+pub(in crate::analysis) use load_curve::{Bond, Followed, LoadMeasure, follow, peak_of, pictures, resultant};
 pub use path::CohesiveState;
 pub use settings::LoadingSettings;

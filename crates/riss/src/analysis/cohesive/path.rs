@@ -90,9 +90,8 @@ impl<'a> Path<'a> {
 
     /// Loads up to the first pair that reaches its strength; none does if the answer is no.
     pub fn begin(&mut self) -> bool {
-        let most = (0..self.condensed.n_pairs())
-            .map(|k| self.exhaustion(k, &self.condensed.tractions(1.0, &self.state.openings)))
-            .fold(0.0, f64::max);
+        let tractions = self.condensed.tractions(1.0, &self.state.openings);
+        let most = (0..self.condensed.n_pairs()).map(|k| self.exhaustion(k, &tractions)).fold(0.0, f64::max);
         if !(most > 0.0 && most.is_finite()) {
             return false;
         }

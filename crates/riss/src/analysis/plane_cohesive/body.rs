@@ -4,7 +4,7 @@
 //! openings `w` and the stiffness `k` of the springs, `s = t - k w` acts on the body with them, `w = λ w_0 - C s`. The tractions
 //! that keep given openings are `t = C⁻¹ (λ w_0 - w) + k w`: that of the body without springs.
 
-use super::super::cohesive::{Condensed, LoadMeasure};
+use super::super::cohesive::{Condensed, LoadMeasure, resultant};
 use super::super::settings::Settings;
 use crate::error::{Error, Result};
 use crate::math::Vector2;
@@ -18,8 +18,6 @@ use rayon::prelude::*;
 /// Stiffness of the springs over Young's modulus and the length that belongs to a knot: about that of the body around it, so that no
 /// digits are lost.
 const SPRINGS: f64 = 1.0;
-/// Loads count as balanced if their sum is below this share of their sizes.
-const BALANCED: f64 = 0.02;
 
 /// A body with joined faces, ready to be solved.
 pub(super) struct JoinedBody<'a> {
@@ -51,7 +49,7 @@ impl<'a> JoinedBody<'a> {
         let loads: Vec<f64> = system.load.iter().zip(&prescribed.load).map(|(f, g)| f - g).collect();
         let system = joined(&system, rows.iter())?;
         let prepared = PreparedSystem::new(model, discrete, system, method, settings.solver)?;
-        let resultant = resultant(model, discrete);
+        let resultant = resultant_of_loads(model, discrete);
         Ok(Some(Self { prepared, rows, loads, prescribed, thickness: model.thickness, resultant }))
     }
 
@@ -151,7 +149,7 @@ struct Response {
 }
 
 /// Resultant of the loads per thickness, or half of the sum of their sizes where they balance [stress·length].
-fn resultant(model: &Model, discrete: &Discretization) -> f64 {
+fn resultant_of_loads(model: &Model, discrete: &Discretization) -> f64 {
     let (mut sum, mut sizes) = (Vector2::zeros(), 0.0);
     let mut add = |force: Vector2| {
         sum += force;
@@ -169,5 +167,5 @@ fn resultant(model: &Model, discrete: &Discretization) -> f64 {
         add(model.body_force_at(point.position) * point.weight);
     }
     model.point_loads.iter().for_each(|l| add(l.force / model.thickness));
-    if sum.norm() > BALANCED * sizes { sum.norm() } else { 0.5 * sizes }
+    resultant(sum.norm(), sizes)
 }

@@ -42,6 +42,7 @@ pub struct PlaneLoadingRecord {
 /// Loads a plane body with cohesive cracks; none if the observer ended it. States with fields reach the observer as steps, in
 /// order, numbered by their point on the load curve; steps of growth before reach it with their states.
 ///
+/// - `settings`: supports by Nitsche's method or a penalty
 /// - `growth`: how the cracks grow, if they do
 /// - `from`: where growth goes on that an earlier run began
 ///
@@ -139,6 +140,8 @@ fn traced(
         let state = &states[point];
         let mut result = result_of(model, settings, &solved, (point, state.load_factor), observer)?;
         add_tractions(model, &solved.discrete, &normal_tractions(&condensed, state), &mut result);
+        // Said once.
+        solved.discrete.notes.clear();
         if observer.step(&result, None).is_break() {
             return Ok(None);
         }

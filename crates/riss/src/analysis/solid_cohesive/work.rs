@@ -1,5 +1,6 @@
 //! What loads on the boundary do: linear functions of the displacements, by integration.
 
+use crate::analysis::cohesive::resultant;
 use crate::approximation::{FitBuffer, ShapeFunctions};
 use crate::error::Result;
 use crate::geometry::triangle::{Triangle, area_vector};
@@ -14,8 +15,6 @@ use rayon::prelude::*;
 const EDGE: f64 = 1.0;
 /// Depth from which points on the boundary look at nodes, over the spacing there.
 const SIGHT: f64 = 1e-3;
-/// Loads count as balanced if their sum is below this share of their sizes.
-const BALANCED: f64 = 0.02;
 
 /// Integrals over the boundary.
 pub(super) struct Work {
@@ -95,7 +94,7 @@ impl Work {
             sizes += share.force.norm();
             work.prescribed = work.prescribed.max(share.prescribed);
         }
-        work.resultant = if sum.norm() > BALANCED * sizes { sum.norm() } else { 0.5 * sizes };
+        work.resultant = resultant(sum.norm(), sizes);
         Ok(work)
     }
 
