@@ -30,6 +30,9 @@ const DEPENDENT: f64 = 1e-3;
 const DEPENDENT_FRONT: f64 = 1e-6;
 /// Nearer to a front than this share of the support, its functions have no derivatives that could be used.
 const CORE: f64 = 1e-6;
+/// Farther from a front than this many support radii its functions are left out: so far away they are polynomials of the
+/// fourth order but for rounding, and fits that must reproduce some of these give equations that no iteration solves.
+const FAR: f64 = 4.0;
 /// Constrained moving least squares over a cloud.
 #[derive(Clone)]
 pub struct ConstrainedMls<const D: usize> {
@@ -205,7 +208,8 @@ impl<const D: usize> ConstrainedMls<D> {
         let near = self.fronts.iter().enumerate().filter_map(|(f, front)| {
             let (distance, frame) = front.within_reach(at, front.reach)?;
             let [x, y] = frame.plane(at);
-            (x.hypot(y) > core).then_some((distance, f, frame))
+            let r = x.hypot(y);
+            (r > core && r < FAR * radius).then_some((distance, f, frame))
         });
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, f, frame)| (f, frame))
     }
