@@ -10,6 +10,7 @@ use riss::model::SolidModel;
 use riss::nodes::solid::solid_obstacles;
 use riss::system::aggregates::Aggregates;
 use riss::system::coarse_level::CoarseLevel;
+use riss::system::dissection::Dissection;
 use riss::system::incomplete_factor::IncompleteFactor;
 use std::hint::black_box;
 use std::path::Path;
@@ -52,7 +53,10 @@ fn bench(c: &mut Criterion) {
     group.bench_function("matrix", |b| b.iter(|| black_box(collocation.assemble().unwrap())));
     let system = collocation.assemble().unwrap();
     group.bench_function("incomplete_factor", |b| {
-        b.iter(|| black_box(IncompleteFactor::new(&system.tangent, std::iter::once(0..n).collect())));
+        b.iter(|| {
+            let dissection = Dissection::new(&system.tangent, &collocation.cloud().positions);
+            black_box(IncompleteFactor::new(&system.tangent, dissection, &vec![false; n]))
+        });
     });
     let positions = &collocation.cloud().positions;
     group.bench_function("coarse_level", |b| {

@@ -1,5 +1,7 @@
 //! Sparse rows of small dense blocks, for systems that are not symmetric.
 
+use super::lane_rows::LaneRow;
+use crate::math::lanes::{Arch, GROUP, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Rows that are made, kept and multiplied together.
@@ -58,6 +60,22 @@ impl<const D: usize> RowChunk<D> {
         let range = self.starts[i] as usize..self.starts[i + 1] as usize;
         (&self.columns[range.clone()], &self.blocks[range])
     }
+
+    fn multiply<const W: usize>(&self, x: &[f64], y: &mut [f64]) {
+        for (i, y) in y.chunks_exact_mut(D * W).enumerate() {
+            let (columns, blocks) = self.row(i);
+            let mut sum = [[0.0; W]; D];
+            for (&j, block) in columns.iter().zip(blocks) {
+                let x = &x[j as usize * D * W..(j as usize + 1) * D * W];
+                for a in 0..D {
+                    for b in 0..D {
+                        (0..W).for_each(|l| sum[a][l] += block[a][b] * x[b * W + l]);
+                    }
+                }
+            }
+            y.copy_from_slice(sum.as_flattened());
+        }
+    }
 }
 
 impl<const D: usize> BlockRows<D> {
@@ -91,21 +109,34 @@ impl<const D: usize> BlockRows<D> {
 
     /// `y = A x` for `W` vectors at once, whose entries stand side by side.
     pub fn multiply_lanes<const W: usize>(&self, x: &[f64], y: &mut [f64]) {
+        let arch = Arch::new();
         y.par_chunks_mut(CHUNK * D * W).zip(&self.chunks).for_each(|(y, chunk)| {
-            for (i, y) in y.chunks_exact_mut(D * W).enumerate() {
-                let (columns, blocks) = chunk.row(i);
-                let mut sum = [[0.0; W]; D];
-                for (&j, block) in columns.iter().zip(blocks) {
-                    let x = &x[j as usize * D * W..(j as usize + 1) * D * W];
-                    for a in 0..D {
-                        for b in 0..D {
-                            (0..W).for_each(|l| sum[a][l] += block[a][b] * x[b * W + l]);
-                        }
-                    }
-                }
-                y.copy_from_slice(sum.as_flattened());
+            if W == GROUP {
+                arch.dispatch(Product { chunk, x, y });
+            } else {
+                chunk.multiply::<W>(x, y);
             }
         });
+    }
+}
+
+/// The rows of a chunk times [`GROUP`] vectors in registers.
+struct Product<'a, const D: usize> {
+    chunk: &'a RowChunk<D>,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl<const D: usize> WithSimd for Product<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for (i, y) in self.y.chunks_exact_mut(D * GROUP).enumerate() {
+            let (columns, blocks) = self.chunk.row(i);
+            y.fill(0.0);
+            LaneRow { columns, blocks, first: 0, values: self.x }.add_to(simd, 1.0, y);
+        }
     }
 }
 

@@ -21,6 +21,15 @@ pub struct CoarseLevel<const D: usize> {
     is_used: Vec<bool>,
     n_border: usize,
     factor: SparseLu,
+    image: Image,
+}
+
+/// What the matrix makes of the modes: for each node the groups that it meets, with `D` numbers for each of their modes.
+#[derive(Default)]
+struct Image {
+    starts: Vec<usize>,
+    groups: Vec<u32>,
+    factors: Vec<f64>,
 }
 
 /// Modes of a group.
@@ -45,10 +54,13 @@ impl<const D: usize> CoarseLevel<D> {
         let is_used = independent_modes(&groups, &factors, &free);
         let parts = Parts { matrix, groups: &groups, factors: &factors, free: &free };
         let n_groups = groups.members.len();
-        let blocks: Vec<Vec<(u32, Vec<f64>)>> = (0..n_groups)
+        let rows: Vec<(Vec<(u32, Vec<f64>)>, Image)> = (0..n_groups)
             .into_par_iter()
             .map_init(|| vec![u32::MAX; n_groups], |slots, g| parts.row(g, slots))
             .collect();
+        let (blocks, images): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+        let image = Image::joined::<D>(positions.len(), &groups, &images);
+        drop(images);
         let m = n_modes::<D>();
         let mut edge = vec![vec![0.0; n_groups * m]; border.len()];
         for (edge, border) in edge.iter_mut().zip(border) {
@@ -56,7 +68,7 @@ impl<const D: usize> CoarseLevel<D> {
             edge.iter_mut().zip(&is_used).filter(|(_, used)| !**used).for_each(|(e, _)| *e = 0.0);
         }
         let factor = SparseLu::new(scalar_rows(&blocks, &is_used, &edge, m))?;
-        Ok(Self { groups, factors, free, is_used, n_border: border.len(), factor })
+        Ok(Self { groups, factors, free, is_used, n_border: border.len(), factor, image })
     }
 
     /// Number of unknowns.
@@ -64,8 +76,9 @@ impl<const D: usize> CoarseLevel<D> {
         self.is_used.len()
     }
 
-    /// `z = P A_c⁻¹ Pᵀ r` for `W` vectors at once, whose entries stand side by side.
-    pub fn solve<const W: usize>(&self, r: &[f64], z: &mut [f64]) {
+    /// `z = P A_c⁻¹ Pᵀ r` for `W` vectors at once, whose entries stand side by side, and what that leaves of `r` but for
+    /// the border.
+    pub fn correct<const W: usize>(&self, r: &[f64], z: &mut [f64], rest: &mut [f64]) {
         let mut amplitudes = vec![0.0; (self.is_used.len() + self.n_border) * W];
         restrict::<D, W>(&self.groups, &self.factors, &self.free, r, &mut amplitudes);
         let unused = amplitudes.chunks_exact_mut(W).zip(&self.is_used).filter(|(_, used)| !**used);
@@ -86,6 +99,50 @@ impl<const D: usize> CoarseLevel<D> {
                 (0..D).for_each(|a| z[a * W + lane] = moved[a]);
             }
         });
+        rest.par_chunks_exact_mut(D * W).zip(r.par_chunks_exact(D * W)).enumerate().for_each(|(i, (rest, r))| {
+            rest.copy_from_slice(r);
+            self.image.subtract::<D, W>(i, &amplitudes, rest);
+        });
+    }
+}
+
+impl Image {
+    /// Puts what was found group by group in the order of the nodes.
+    fn joined<const D: usize>(n: usize, groups: &Aggregates, images: &[Self]) -> Self {
+        let size = D * n_modes::<D>();
+        let mut source = vec![(0u32, 0u32); n];
+        for (g, members) in groups.members.iter().enumerate() {
+            members.iter().enumerate().for_each(|(k, &i)| source[i as usize] = (g as u32, k as u32));
+        }
+        let total: usize = images.iter().map(|m| m.groups.len()).sum();
+        let mut joined =
+            Self { starts: vec![0], groups: Vec::with_capacity(total), factors: Vec::with_capacity(total * size) };
+        for (i, (g, k)) in source.into_iter().enumerate() {
+            if groups.of_node[i] != NO_GROUP {
+                let (own, k) = (&images[g as usize], k as usize);
+                let range = own.starts[k]..own.starts[k + 1];
+                joined.groups.extend(&own.groups[range.clone()]);
+                joined.factors.extend(&own.factors[range.start * size..range.end * size]);
+            }
+            joined.starts.push(joined.groups.len());
+        }
+        joined
+    }
+
+    /// Subtracts the image of amplitudes at a node.
+    #[inline]
+    fn subtract<const D: usize, const W: usize>(&self, node: usize, amplitudes: &[f64], rest: &mut [f64]) {
+        let m = n_modes::<D>();
+        let range = self.starts[node]..self.starts[node + 1];
+        let factors = self.factors[range.start * D * m..range.end * D * m].chunks_exact(D * m);
+        for (&group, factors) in self.groups[range].iter().zip(factors) {
+            let own = &amplitudes[group as usize * m * W..(group as usize + 1) * m * W];
+            for (rest, row) in rest.chunks_exact_mut(W).zip(factors.chunks_exact(m)) {
+                for (factor, own) in row.iter().zip(own.chunks_exact(W)) {
+                    (0..W).for_each(|l| rest[l] -= factor * own[l]);
+                }
+            }
+        }
     }
 }
 
@@ -150,9 +207,10 @@ struct Parts<'a, const D: usize> {
 }
 
 impl<const D: usize> Parts<'_, D> {
-    /// The blocks of a group with those it meets, in the order of their numbers.
-    fn row(&self, group: usize, slots: &mut [u32]) -> Vec<(u32, Vec<f64>)> {
+    /// The blocks of a group with those it meets, in the order of their numbers, and the image at its nodes.
+    fn row(&self, group: usize, slots: &mut [u32]) -> (Vec<(u32, Vec<f64>)>, Image) {
         let m = n_modes::<D>();
+        let mut image = Image { starts: vec![0], ..Image::default() };
         let mut found: Vec<(u32, Vec<f64>)> = vec![];
         let mut sums: Vec<f64> = vec![];
         for &i in &self.groups.members[group] {
@@ -182,6 +240,13 @@ impl<const D: usize> Parts<'_, D> {
                     }
                 }
             }
+            for ((other, _), sum) in
+                found.iter().zip(sums.chunks_exact(D * m)).filter(|f| f.1.iter().any(|v| *v != 0.0))
+            {
+                image.groups.push(*other);
+                image.factors.extend(sum.iter());
+            }
+            image.starts.push(image.groups.len());
             let (w, q) = (&self.factors[i], &self.free[i]);
             for ((_, target), sum) in found.iter_mut().zip(sums.chunks_exact(D * m)) {
                 for a in 0..D {
@@ -194,7 +259,7 @@ impl<const D: usize> Parts<'_, D> {
         }
         found.iter().for_each(|f| slots[f.0 as usize] = u32::MAX);
         found.sort_unstable_by_key(|f| f.0);
-        found
+        (found, image)
     }
 }
 

@@ -4,6 +4,7 @@ use super::aggregates::Aggregates;
 use super::coarse_level::CoarseLevel;
 use super::collocation::{Collocation, CollocationSystem};
 use super::collocation_settings::CollocationSolver;
+use super::dissection::Dissection;
 use super::incomplete_factor::IncompleteFactor;
 use super::krylov::{self, Limits, LinearMap, Progress};
 use super::sparse_lu::{ScalarRows, SparseLu};
@@ -11,8 +12,8 @@ use crate::error::{Error, Result};
 use crate::math::symmetric_eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector, axis};
 use crate::model::RigidMotion;
+use crate::nodes::cloud::Place;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// Up to this many nodes the direct solver is faster.
@@ -30,6 +31,8 @@ const RESTART: usize = 80;
 /// Least and greatest number of nodes in a group of the coarse level, and groups wanted in between.
 const GROUP_SIZES: [usize; 2] = [150, 600];
 const GROUPS: usize = 500;
+/// Largest share of rows that the incomplete factors keep fuller.
+const MOST_FULLER: f64 = 0.05;
 /// Right-hand sides that are solved at once.
 const TOGETHER: usize = 8;
 /// Rigid motions are held if what fixes them is above this share of what fixes the firmest.
@@ -96,7 +99,10 @@ impl<const D: usize> Collocation<D> {
             let size = (n / GROUPS).clamp(GROUP_SIZES[0], GROUP_SIZES[1]);
             let positions = &self.cloud().positions;
             let (fine, coarse) = rayon::join(
-                || IncompleteFactor::new(&system.tangent, parts(n)),
+                || {
+                    let dissection = Dissection::new(&system.tangent, positions);
+                    IncompleteFactor::new(&system.tangent, dissection, &self.rows_at_fronts(system))
+                },
                 || {
                     let groups = Aggregates::new(positions, &system.tangent, &system.fixed, size);
                     CoarseLevel::new(&system.tangent, positions, &system.fixed, groups, &border)
@@ -105,6 +111,16 @@ impl<const D: usize> Collocation<D> {
             Factors::Iterative { fine, coarse: coarse? }
         };
         Ok(PreparedSolver { system, border, factors })
+    }
+
+    /// Nodes whose rows see a node of a front. Fields that are too singular there are held by the equations of few nodes;
+    /// what factors leave out lets them go. None if these are many, since fuller rows would cost more than they save.
+    fn rows_at_fronts(&self, system: &CollocationSystem<D>) -> Vec<bool> {
+        let n = self.cloud().len();
+        let is_front = |j: &u32| matches!(self.cloud().places[*j as usize], Place::Front { .. });
+        let found: Vec<bool> = (0..n).into_par_iter().map(|i| system.tangent.row(i).0.iter().any(is_front)).collect();
+        let n_found = found.iter().filter(|f| **f).count();
+        if n_found as f64 > MOST_FULLER * n as f64 { vec![false; n] } else { found }
     }
 
     /// Unit vectors of the rigid motions that nothing holds.
@@ -208,10 +224,15 @@ impl<const D: usize> PreparedSolver<'_, D> {
     /// `y = (A + Σ b bᵀ) x`.
     fn multiply<const W: usize>(&self, x: &[f64], y: &mut [f64]) {
         self.system.tangent.multiply_lanes::<W>(x, y);
+        self.add_border::<W>(1.0, x, y);
+    }
+
+    /// `y += factor Σ b bᵀ x`.
+    fn add_border<const W: usize>(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         for b in &self.border {
             let mut along = [0.0; W];
             for (x, b) in x.chunks_exact(W).zip(b) {
-                (0..W).for_each(|l| along[l] += x[l] * b);
+                (0..W).for_each(|l| along[l] += factor * x[l] * b);
             }
             for (y, b) in y.chunks_exact_mut(W).zip(b) {
                 (0..W).for_each(|l| y[l] += along[l] * b);
@@ -227,7 +248,9 @@ impl<const D: usize> PreparedSolver<'_, D> {
     ) -> Result<(Vec<f64>, SolverEffort)> {
         let matrix = |x: &[f64], y: &mut [f64]| self.multiply::<1>(x, y);
         let preconditioner = TwoLevel::<D, 1>::new(self, coarse, fine);
-        let mut x = vec![0.0; right.len()];
+        // Affine solutions are met at once, and what is nothing but rounding is not given to the incomplete factors.
+        let (mut x, mut rest) = (vec![0.0; right.len()], vec![0.0; right.len()]);
+        coarse.correct::<1>(right, &mut x, &mut rest);
         let (method, progress) = iterate(&matrix, &preconditioner, right, &mut x);
         if !(progress.residual <= ALLOWED) {
             return Err(Error::NotConverged {
@@ -324,35 +347,26 @@ struct TwoLevel<'a, const D: usize, const W: usize> {
     coarse: &'a CoarseLevel<D>,
     fine: &'a IncompleteFactor<D>,
     /// Working memory, of one thread at a time.
-    memory: Mutex<[Vec<f64>; 2]>,
+    memory: Mutex<[Vec<f64>; 3]>,
 }
 
 impl<'a, const D: usize, const W: usize> TwoLevel<'a, D, W> {
     fn new(solver: &'a PreparedSolver<'a, D>, coarse: &'a CoarseLevel<D>, fine: &'a IncompleteFactor<D>) -> Self {
         let n = solver.system.load.len() * W;
-        Self { solver, coarse, fine, memory: Mutex::new([vec![0.0; n], vec![0.0; n]]) }
+        Self { solver, coarse, fine, memory: Mutex::new(std::array::from_fn(|_| vec![0.0; n])) }
     }
 }
 
 impl<const D: usize, const W: usize> LinearMap for TwoLevel<'_, D, W> {
     fn apply(&self, r: &[f64], z: &mut [f64]) {
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let [rest, fine] = &mut *memory;
-        self.coarse.solve::<W>(r, z);
-        krylov::residual(&|x: &[f64], y: &mut [f64]| self.solver.multiply::<W>(x, y), r, z, rest);
-        self.fine.solve::<W>(rest, fine);
+        let [rest, fine, work] = &mut *memory;
+        self.coarse.correct::<W>(r, z, rest);
+        self.solver.add_border::<W>(-1.0, z, rest);
+        self.fine.solve::<W>(rest, fine, work);
         krylov::add(z, 1.0, fine);
     }
 }
-
-/// Ranges of rows that are factored each by itself.
-fn parts(n: usize) -> Vec<Range<usize>> {
-    let n_parts = n.div_ceil(PART_NODES).max(1);
-    (0..n_parts).map(|p| p * n / n_parts..(p + 1) * n / n_parts).collect()
-}
-
-/// Most nodes in a part.
-const PART_NODES: usize = 1_000_000;
 
 /// Translations and rotations about the middle, as orthogonal unit vectors in the plane and nearly so in space.
 fn rigid_motions<const D: usize>(positions: &[Vector<D>]) -> Vec<Vec<f64>> {
