@@ -1,10 +1,14 @@
 //! The jobs of the targets.
 
-use super::{CASE, GEOMETRY_TO_K, STAGES, Sample, command_line, fastest, number, out_folder, processor_time, run_case};
+use super::curves::{Sample, fastest_plate, plate_command, worst_factor};
+use super::{CASE, CUBOID, STAGES, number, out_folder, processor_time, run_case};
 use crate::{Outcome, target_dir};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
+
+/// Numbers of nodes among which one is good enough.
+const GEOMETRY_TO_K: [f64; 7] = [250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16_000.0];
 
 /// Seconds of the fastest sample of a benchmark, for one pass, and elements in it. The mean depends more on what else runs.
 fn bench(name: &str) -> Result<(f64, f64), String> {
@@ -54,7 +58,7 @@ pub(super) fn rows(program: &Path, reference: f64) -> Result<String, String> {
     // The coarsest plate that is good enough, as all finer ones are: an error may be small by chance.
     let mut samples = vec![];
     for n in GEOMETRY_TO_K {
-        samples.push((fastest(program, n, 1)?, n));
+        samples.push((fastest_plate(program, n, 1)?, n));
     }
     for (error, peer, target) in [(1e-3, "0.05 s", "0.015 s"), (1e-4, "0.08 s", "0.05 s")] {
         let is_good = |s: &Sample| (s.k1 / reference - 1.0).abs() <= error;
@@ -68,7 +72,7 @@ pub(super) fn rows(program: &Path, reference: f64) -> Result<String, String> {
             }
         };
         let job = format!("geometry to K of the shear edge crack, whole process, K_I to {error:.0e} of {reference}");
-        row(&job, peer, target, measured, &command_line(n, 1));
+        row(&job, peer, target, measured, &plate_command(n, 1));
     }
     growth_row(program, &mut row)?;
     many_cracks_row(program, &mut row)?;
@@ -126,13 +130,9 @@ fn many_cracks_row(program: &Path, row: &mut Row) -> Outcome {
     Ok(())
 }
 
-/// The near-tip field of a straight front, whose factor is 1.
-const CUBOID: &str = "near-tip-cuboid";
-
 fn cuboid_row(program: &Path, row: &mut Row) -> Outcome {
     let results = run_case(program, CUBOID, &[], 2, &out_folder())?;
-    let points = results["fronts"][0]["points"].as_array().map_or(&[][..], Vec::as_slice);
-    let error = points.iter().map(|p| (number(&p["K_I"]) - 1.0).abs()).fold(0.0, f64::max);
+    let error = (worst_factor(&results) - 1.0).abs();
     row(
         "3D near-tip cuboid, K error of 0.5 %",
         "312,000 nodes, 27 s, 1.3 GB",

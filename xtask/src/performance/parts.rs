@@ -1,6 +1,7 @@
 //! Instructions of a run by part of the program.
 
-use super::{CASE, command_line, spacing};
+use super::CASE;
+use super::curves::{plate_command, plate_setting};
 use crate::{instructions, target_dir};
 use std::fmt::Write;
 use std::path::Path;
@@ -30,7 +31,7 @@ pub(super) fn part_table(program: &Path) -> Result<String, String> {
         return Ok(format!("{head}Not measured: valgrind is not installed.\n"));
     }
     let (file, n) = (target_dir().join("performance.callgrind"), 1000.0);
-    let set = format!("nodes.layout.graded.spacing={:.4}", spacing(n));
+    let set = plate_setting(n);
     instructions::count(program, &["run", &format!("cases/{CASE}/case.toml"), "--threads", "1", "--set", &set], &file)?;
     let annotate = Command::new("callgrind_annotate").args(["--auto=no", "--threshold=100"]).arg(&file).output();
     let table = String::from_utf8_lossy(&annotate.map_err(|e| format!("callgrind_annotate: {e}"))?.stdout).into_owned();
@@ -38,7 +39,7 @@ pub(super) fn part_table(program: &Path) -> Result<String, String> {
     let mut text = format!(
         "{head}{} under `valgrind --tool=callgrind`, which shows the program a processor with AVX2. They do not depend on \
          what else the machine does.\n\n| part | million instructions | share |\n| --- | ---: | ---: |\n",
-        command_line(n, 1)
+        plate_command(n, 1)
     );
     for (part, count) in PARTS.iter().map(|p| p.0).chain(["the rest"]).zip(counts).chain([("all", total)]) {
         writeln!(text, "| {part} | {:.0} | {:.0} % |", count / 1e6, 100.0 * count / total).expect("a string takes all");
