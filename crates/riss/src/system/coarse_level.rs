@@ -32,6 +32,9 @@ struct Image {
     factors: Vec<f64>,
 }
 
+/// Groups that a group meets, with the block of each.
+type GroupRow = Vec<(u32, Vec<f64>)>;
+
 /// Modes of a group.
 const fn n_modes<const D: usize>() -> usize {
     D * (D + 1)
@@ -54,7 +57,7 @@ impl<const D: usize> CoarseLevel<D> {
         let is_used = independent_modes(&groups, &factors, &free);
         let parts = Parts { matrix, groups: &groups, factors: &factors, free: &free };
         let n_groups = groups.members.len();
-        let rows: Vec<(Vec<(u32, Vec<f64>)>, Image)> = (0..n_groups)
+        let rows: Vec<(GroupRow, Image)> = (0..n_groups)
             .into_par_iter()
             .map_init(|| vec![u32::MAX; n_groups], |slots, g| parts.row(g, slots))
             .collect();
@@ -208,7 +211,7 @@ struct Parts<'a, const D: usize> {
 
 impl<const D: usize> Parts<'_, D> {
     /// The blocks of a group with those it meets, in the order of their numbers, and the image at its nodes.
-    fn row(&self, group: usize, slots: &mut [u32]) -> (Vec<(u32, Vec<f64>)>, Image) {
+    fn row(&self, group: usize, slots: &mut [u32]) -> (GroupRow, Image) {
         let m = n_modes::<D>();
         let mut image = Image { starts: vec![0], ..Image::default() };
         let mut found: Vec<(u32, Vec<f64>)> = vec![];
@@ -290,7 +293,7 @@ fn restrict<const D: usize, const W: usize>(
 }
 
 /// The coarse matrix, with the border and minus the identity in its corner.
-fn scalar_rows(blocks: &[Vec<(u32, Vec<f64>)>], is_used: &[bool], edge: &[Vec<f64>], m: usize) -> ScalarRows {
+fn scalar_rows(blocks: &[GroupRow], is_used: &[bool], edge: &[Vec<f64>], m: usize) -> ScalarRows {
     let n = is_used.len();
     let mut rows = ScalarRows::default();
     for (group, found) in blocks.iter().enumerate() {

@@ -94,7 +94,7 @@ impl<const D: usize> Collocation<D> {
             CollocationSolver::Iterative => false,
         };
         let factors = if is_direct {
-            Factors::Direct(SparseLu::new(ScalarRows::bordered(&system.tangent, &border))?)
+            Factors::Direct(Box::new(SparseLu::new(ScalarRows::bordered(&system.tangent, &border))?))
         } else {
             let size = (n / GROUPS).clamp(GROUP_SIZES[0], GROUP_SIZES[1]);
             let positions = &self.cloud().positions;
@@ -108,7 +108,7 @@ impl<const D: usize> Collocation<D> {
                     CoarseLevel::new(&system.tangent, positions, &system.fixed, groups, &border)
                 },
             );
-            Factors::Iterative { fine, coarse: coarse? }
+            Factors::Iterative { fine, coarse: Box::new(coarse?) }
         };
         Ok(PreparedSolver { system, border, factors })
     }
@@ -167,8 +167,8 @@ pub struct PreparedSolver<'a, const D: usize> {
 
 /// What solves.
 enum Factors<const D: usize> {
-    Direct(SparseLu),
-    Iterative { fine: IncompleteFactor<D>, coarse: CoarseLevel<D> },
+    Direct(Box<SparseLu>),
+    Iterative { fine: IncompleteFactor<D>, coarse: Box<CoarseLevel<D>> },
 }
 
 impl<const D: usize> PreparedSolver<'_, D> {
