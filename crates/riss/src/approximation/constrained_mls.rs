@@ -31,7 +31,7 @@ const DEPENDENT_FRONT: f64 = 1e-6;
 /// Nearer to a front than this share of the support, its functions have no derivatives that could be used.
 const CORE: f64 = 1e-6;
 /// Farther from a front than this many support radii its functions are left out: so far away they are polynomials of the
-/// fourth order but for rounding, and fits that must reproduce some of these give equations that no iteration solves.
+/// fourth order but for a part in 10⁵, and fits that must reproduce some of these give equations that no iteration solves.
 const FAR: f64 = 4.0;
 /// Constrained moving least squares over a cloud.
 #[derive(Clone)]

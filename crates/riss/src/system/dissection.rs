@@ -48,12 +48,6 @@ impl Dissection {
         order.iter().enumerate().for_each(|(place, &node)| places[node as usize] = place as u32);
         Self { order, places, stages }
     }
-
-    /// All nodes in one part, in their order.
-    pub fn whole(n: usize) -> Self {
-        let order: Vec<u32> = (0..n as u32).collect();
-        Self { places: order.clone(), order, stages: vec![std::iter::once(0..n).collect()] }
-    }
 }
 
 const NONE: u8 = 0;
