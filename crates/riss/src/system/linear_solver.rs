@@ -1,18 +1,18 @@
-//! Sparse symmetric factorization: the only file that sees `faer`'s solvers.
+//! Symmetric systems, definite or not, solved to full precision.
 
 use super::block_matrix::BlockMatrix;
 use super::constraints::ConstraintRow;
+use super::multifrontal::{Cholesky, EliminationTree};
 use crate::error::{Error, Result};
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, IntranodeLbltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use faer::traits::ComplexField;
 use faer::{Conj, Mat, Par, Side};
+use std::sync::Arc;
 
 /// From this many dofs a factor in single precision with conjugate gradients is faster and half the size.
 pub const MIXED_FROM: usize = 120_000;
@@ -34,30 +34,24 @@ pub enum Factor {
     },
 }
 
-/// A Cholesky factor with its symbolic part.
-pub struct Cholesky<T> {
-    symbolic: SymbolicCholesky<usize>,
-    values: Vec<T>,
-}
-
 impl Factor {
     /// Factors in double precision.
     ///
     /// # Errors
     /// [`Error::Factorization`] if the matrix is not positive definite.
-    pub fn double(matrix: &BlockMatrix, order: &[u32]) -> Result<Self> {
-        Ok(Self::Double(factor_cholesky(matrix, order, |v, _, _| v)?))
+    pub fn double(matrix: &BlockMatrix, tree: Arc<EliminationTree>) -> Result<Self> {
+        Ok(Self::Double(Cholesky::new(tree, matrix, |v, _, _| v)?))
     }
 
     /// Factors in single precision.
     ///
     /// # Errors
     /// [`Error::Factorization`] if the matrix is not positive definite in this precision.
-    pub fn single(matrix: &BlockMatrix, order: &[u32]) -> Result<Self> {
+    pub fn single(matrix: &BlockMatrix, tree: Arc<EliminationTree>) -> Result<Self> {
         let scale: Vec<f64> = (0..2 * matrix.n_nodes())
             .map(|dof| matrix.blocks[matrix.row_starts[dof / 2 + 1] - 1][3 * (dof % 2)].sqrt().recip())
             .collect();
-        let factor = factor_cholesky(matrix, order, |v, i, j| (v * scale[i] * scale[j]) as f32)?;
+        let factor = Cholesky::new(tree, matrix, |v, i, j| (v * scale[i] * scale[j]) as f32)?;
         Ok(Self::Single { factor, scale })
     }
 
@@ -85,24 +79,8 @@ impl Factor {
     }
 }
 
-impl<T: ComplexField> Cholesky<T> {
-    fn solve_in_place(&self, x: &mut [T]) {
-        let n = x.len();
-        let mut right = Mat::from_fn(n, 1, |i, _| x[i].clone());
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<T>(1, Par::Seq));
-        let factor = faer::sparse::linalg::cholesky::LltRef::new(&self.symbolic, &self.values);
-        factor.solve_in_place_with_conj(Conj::No, right.as_mut(), Par::Seq, MemStack::new(&mut memory));
-        for (i, v) in x.iter_mut().enumerate() {
-            *v = right[(i, 0)].clone();
-        }
-    }
-}
-
 /// Expands blocks to scalars: row `i` of the lower triangle is column `i` of the upper one.
-fn upper_columns<T>(
-    matrix: &BlockMatrix,
-    convert: impl Fn(f64, usize, usize) -> T,
-) -> (Vec<usize>, Vec<usize>, Vec<T>) {
+fn upper_columns(matrix: &BlockMatrix) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
     let n = matrix.n_nodes();
     let n_values = 4 * matrix.columns.len() - n;
     let (mut starts, mut rows, mut values) =
@@ -110,12 +88,11 @@ fn upper_columns<T>(
     starts.push(0);
     for i in 0..n {
         for c in 0..2 {
-            let column = 2 * i + c;
             for k in matrix.row_starts[i]..matrix.row_starts[i + 1] {
                 let j = matrix.columns[k] as usize;
                 for d in 0..if i == j { c + 1 } else { 2 } {
                     rows.push(2 * j + d);
-                    values.push(convert(matrix.blocks[k][2 * c + d], column, 2 * j + d));
+                    values.push(matrix.blocks[k][2 * c + d]);
                 }
             }
             starts.push(rows.len());
@@ -124,8 +101,8 @@ fn upper_columns<T>(
     (starts, rows, values)
 }
 
-fn symbolic_factor<T>(
-    matrix: &SparseColMat<usize, T>,
+fn symbolic_factor(
+    matrix: &SparseColMat<usize, f64>,
     order: &[usize],
     inverse: &[usize],
 ) -> Result<SymbolicCholesky<usize>> {
@@ -145,33 +122,6 @@ fn invert(order: &[usize]) -> Vec<usize> {
         inverse[dof] = position;
     }
     inverse
-}
-
-fn factor_cholesky<T: ComplexField + faer::traits::RealField>(
-    matrix: &BlockMatrix,
-    order: &[u32],
-    convert: impl Fn(f64, usize, usize) -> T,
-) -> Result<Cholesky<T>> {
-    let n = 2 * matrix.n_nodes();
-    let (starts, rows, values) = upper_columns(matrix, convert);
-    let sparse = SparseColMat::new(SymbolicSparseColMat::new_checked(n, n, starts, None, rows), values);
-    let order: Vec<usize> = order.iter().flat_map(|&i| [2 * i as usize, 2 * i as usize + 1]).collect();
-    let symbolic = symbolic_factor(&sparse, &order, &invert(&order))?;
-    let mut values = vec![T::zero_impl(); symbolic.len_val()];
-    let threads = Par::rayon(0);
-    let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<T>(threads, Default::default()));
-    symbolic
-        .factorize_numeric_llt(
-            &mut values,
-            sparse.as_ref(),
-            Side::Upper,
-            LltRegularization::default(),
-            threads,
-            MemStack::new(&mut memory),
-            Default::default(),
-        )
-        .map_err(|e| Error::Factorization { reason: format!("it is not positive definite ({e:?})") })?;
-    Ok(Cholesky { symbolic, values })
 }
 
 fn conjugate_gradients(
@@ -239,7 +189,7 @@ impl SaddleFactor {
         let stiffness = matrix.largest_diagonal();
         let largest = |row: &ConstraintRow| row.entries.iter().fold(0.0f64, |a, e| a.max(e.1.abs()));
         let scales: Vec<f64> = rows.iter().map(|row| stiffness / largest(row)).collect();
-        let (mut starts, mut indices, mut values) = upper_columns(matrix, |v, _, _| v);
+        let (mut starts, mut indices, mut values) = upper_columns(matrix);
         for (k, row) in rows.iter().enumerate() {
             for &(dof, v) in &row.entries {
                 indices.push(dof);

@@ -3,9 +3,11 @@
 use super::block_matrix::BlockMatrix;
 use super::constraints::ConstraintRow;
 use super::linear_solver::{Factor, MIXED_FROM, SaddleFactor};
+use super::multifrontal::EliminationTree;
 use super::settings::LinearSolver;
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
+use std::sync::Arc;
 
 /// Unknowns of nodes, and multipliers of the constraint rows.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +29,7 @@ enum Kind {
     /// Cholesky, the rows by their Schur complement.
     Definite { factor: Factor, columns: Vec<Vec<f64>>, schur: LU<f64, Dyn, Dyn> },
     /// With the multipliers, or an indefinite matrix.
-    Indefinite(SaddleFactor),
+    Indefinite(Box<SaddleFactor>),
 }
 
 fn apply(row: &ConstraintRow, x: &[f64]) -> f64 {
@@ -41,7 +43,7 @@ impl NodeSolver {
     /// [`Error::Factorization`] if the matrix is not positive definite.
     pub fn definite(
         matrix: &mut BlockMatrix,
-        order: &[u32],
+        tree: &Arc<EliminationTree>,
         rows: &[ConstraintRow],
         solver: LinearSolver,
     ) -> Result<Self> {
@@ -53,10 +55,10 @@ impl NodeSolver {
             LinearSolver::Direct => false,
             LinearSolver::MixedPrecision => true,
         };
-        let factor = match single.then(|| Factor::single(matrix, order)) {
+        let factor = match single.then(|| Factor::single(matrix, tree.clone())) {
             Some(Ok(factor)) => factor,
             // Too ill conditioned for single precision.
-            Some(Err(_)) | None => Factor::double(matrix, order)?,
+            Some(Err(_)) | None => Factor::double(matrix, tree.clone())?,
         };
         let column = |row: &ConstraintRow| {
             let mut c = vec![0.0; 2 * matrix.n_nodes()];
@@ -73,7 +75,7 @@ impl NodeSolver {
     /// # Errors
     /// [`Error::Factorization`] if there is no factor.
     pub fn indefinite(matrix: &BlockMatrix, order: &[u32], rows: &[ConstraintRow]) -> Result<Self> {
-        Ok(Self { kind: Kind::Indefinite(SaddleFactor::new(matrix, order, rows)?), augmentation: 0.0 })
+        Ok(Self { kind: Kind::Indefinite(Box::new(SaddleFactor::new(matrix, order, rows)?)), augmentation: 0.0 })
     }
 
     /// Solves with a load and values of the rows; matrix and rows are those of the factorization.

@@ -5,14 +5,15 @@ use super::constraints::{ConstraintRow, Supports, multiplier_rows, point_rows};
 use super::discretization::Discretization;
 use super::galerkin::LinearSystem;
 use super::held_nodes::HeldNodes;
+use super::multifrontal::EliminationTree;
 use super::node_solver::{NodeSolver, Part};
-use super::ordering::nested_dissection;
 use super::rigid_motion::{BalancingForce, MeanMotion, check_held};
 use super::settings::{ConstraintMethod, LinearSolver};
 use super::tip_factors::Border;
 use crate::error::{Error, Result};
 use crate::math::Vector2;
 use crate::model::{Model, PartId, RigidMotion};
+use std::sync::Arc;
 
 /// Largest relative residual of an accepted solution.
 pub const ALLOWED_RESIDUAL: f64 = 1e-8;
@@ -101,7 +102,7 @@ impl<'a> PreparedSystem<'a> {
         }
         let positions = &discrete.approximation.nodes().positions;
         let places = discrete.approximation.function_positions();
-        let order = nested_dissection(&places[..system.matrix.n_nodes()], &system.matrix);
+        let tree = Arc::new(EliminationTree::new(&places[..system.matrix.n_nodes()], &system.matrix));
         let mean = match model.rigid_motion {
             RigidMotion::Supported => None,
             RigidMotion::MeanIsZero => Some(MeanMotion::new(discrete)?),
@@ -130,8 +131,8 @@ impl<'a> PreparedSystem<'a> {
         }
         let is_indefinite = n_supports > 0 || *method == ConstraintMethod::ModifiedVariational;
         let nodes = match is_indefinite {
-            true => NodeSolver::indefinite(&system.matrix, &order, &rows)?,
-            false => NodeSolver::definite(&mut system.matrix, &order, &rows, solver)?,
+            true => NodeSolver::indefinite(&system.matrix, &tree.order, &rows)?,
+            false => NodeSolver::definite(&mut system.matrix, &tree, &rows, solver)?,
         };
         Ok(Self { discrete, system, rows, n_supports, nodes, held, border, mean, balance })
     }
