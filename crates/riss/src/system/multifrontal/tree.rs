@@ -9,6 +9,9 @@ use std::ops::Range;
 const LEAF: usize = 60;
 /// Nodes of such a set that are eliminated together.
 const CHUNK: usize = 20;
+/// Shares of the nodes on the left of a cut that are tried, all of them in sets of fewer than [`MANY`] nodes.
+const SHARES: [f64; 5] = [0.5, 0.45, 0.55, 0.42, 0.58];
+const MANY: usize = 4000;
 
 /// An order of elimination, and the fronts in which it is done.
 #[derive(Clone, Debug)]
@@ -51,7 +54,7 @@ impl Front {
 }
 
 impl EliminationTree {
-    /// Halves the nodes at the median along the axis that leaves fewer of them between; these come last.
+    /// Cuts the nodes in two where few are between, and each part again; those between come last.
     pub fn new(positions: &[Vector2], matrix: &BlockMatrix) -> Self {
         let graph = Graph::of(matrix);
         let mut tree =
@@ -206,16 +209,34 @@ impl Cuts<'_> {
         nodes.sort_unstable_by(|&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)));
     }
 
-    /// Puts the lower half along an axis first, and marks the upper one.
-    fn cut(&mut self, nodes: &mut [u32], axis: usize) {
-        let middle = nodes.len() / 2;
+    /// Puts the `left` lowest nodes along an axis first, and marks the others.
+    fn cut(&mut self, nodes: &mut [u32], axis: usize, left: usize) {
         let at = |i: u32| self.positions[i as usize][axis];
-        nodes.select_nth_unstable_by(middle, |&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)));
+        nodes.select_nth_unstable_by(left, |&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)));
         self.stamp += 1;
-        nodes[middle..].iter().for_each(|&i| self.marks[i as usize] = self.stamp);
+        nodes[left..].iter().for_each(|&i| self.marks[i as usize] = self.stamp);
     }
 
-    /// Whether a node is coupled to the upper half.
+    /// Axis, and how many nodes to put on the left: few are between then, and the parts are not too different. Nodes crowd
+    /// around tips, and the way through the middle may lead through all of them.
+    fn best_cut(&mut self, nodes: &mut [u32]) -> (usize, usize) {
+        let shares = if nodes.len() < MANY { &SHARES[..] } else { &SHARES[..3] };
+        let mut best = (f64::INFINITY, (0, 0));
+        for axis in [0, 1] {
+            for share in shares {
+                let left = (share * nodes.len() as f64) as usize;
+                self.cut(nodes, axis, left);
+                let between = nodes[..left].iter().filter(|i| self.touches(**i)).count();
+                let cost = between as f64 / (share * (1.0 - share));
+                if cost < best.0 {
+                    best = (cost, (axis, left));
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Whether a node is coupled to marked ones.
     fn touches(&self, i: u32) -> bool {
         self.graph.neighbors(i).iter().any(|j| self.marks[j.0 as usize] == self.stamp)
     }
@@ -225,17 +246,9 @@ impl Cuts<'_> {
         if nodes.len() <= LEAF {
             return self.sweep(nodes, tree);
         }
-        let middle = nodes.len() / 2;
-        // Nodes crowd around tips: the way across the longer side may lead through all of them.
-        let [across_y, across_x] = [1, 0].map(|axis| {
-            self.cut(&mut nodes, axis);
-            nodes[..middle].iter().filter(|i| self.touches(**i)).count()
-        });
-        let axis = usize::from(across_y < across_x);
-        if axis == 1 {
-            self.cut(&mut nodes, axis);
-        }
-        let right = nodes.split_off(middle);
+        let (axis, left) = self.best_cut(&mut nodes);
+        self.cut(&mut nodes, axis, left);
+        let right = nodes.split_off(left);
         let (mut separator, left): (Vec<u32>, Vec<u32>) = nodes.into_iter().partition(|i| self.touches(*i));
         self.sort(&mut separator, 1 - axis);
         let children: Vec<usize> = [left, right].into_iter().filter_map(|part| self.dissect(part, tree)).collect();
