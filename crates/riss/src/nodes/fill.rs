@@ -3,11 +3,14 @@
 use super::spacing::SpacingField;
 use crate::math::{Vector2, direction};
 use rustc_hash::FxHashMap;
+use std::f64::consts::TAU;
 
 /// Candidates around each point.
 const CANDIDATES: usize = 12;
 /// Closest allowed distance over the spacing at the candidate.
 const CLOSENESS: f64 = 0.85;
+/// Over the spacing at the candidate, how near given points are for it to be asked whether it is inside.
+const NEAR_GIVEN: f64 = 2.0;
 
 /// New points such that every point of the body has one within about its spacing and none nearer than
 /// most of it to another. `inside` must hold for new points; it is asked only near given points.
@@ -22,21 +25,33 @@ pub fn fill(
     for (i, &(p, h)) in given.iter().enumerate() {
         grid.insert(i as u32, p, h);
     }
+    let mut around = vec![];
     let mut current = 0;
     while current < points.len() && points.len() < limit {
         let (p, h) = points[current];
         // A different start angle for each point, from its index, so that runs repeat.
         let start = current as f64 * 2.399_963_229_728_653;
-        for k in 0..CANDIDATES {
-            let candidate = p + direction(start + k as f64 * std::f64::consts::TAU / CANDIDATES as f64) * h;
-            let own = spacing.at(candidate);
-            if grid.any_within(CLOSENESS * own, candidate, own, &points, |_| true) {
+        let at = |k: usize| p + direction(start + k as f64 * TAU / CANDIDATES as f64) * h;
+        let candidates: [_; CANDIDATES] = std::array::from_fn(|k| (at(k), spacing.at(at(k))));
+        let (least, largest) = candidates.iter().fold((h, h), |(l, g), c| (c.1.min(l), c.1.max(g)));
+        let reach = h + NEAR_GIVEN * largest;
+        grid.within_into(reach, p, [least, largest], &points, &mut around);
+        for (candidate, own) in candidates {
+            let is_like = |level: i32| (level - LevelGrid::level(own)).abs() <= 1;
+            let any_within = |reach: f64, first: usize| {
+                let is_near = |(i, q, level): &(u32, Vector2, i32)| {
+                    (*i as usize) < first && is_like(*level) && (q - candidate).norm() < reach
+                };
+                around.iter().any(is_near)
+            };
+            if any_within(CLOSENESS * own, usize::MAX) {
                 continue;
             }
-            let near_given = current < given.len()
-                || grid.any_within(2.0 * own, candidate, own, &points, |i| (i as usize) < given.len());
+            let near_given = current < given.len() || any_within(NEAR_GIVEN * own, given.len());
             if !near_given || inside(candidate) {
-                grid.insert(points.len() as u32, candidate, own);
+                let index = points.len() as u32;
+                grid.insert(index, candidate, own);
+                around.push((index, candidate, LevelGrid::level(own)));
                 points.push((candidate, own));
             }
         }
@@ -44,6 +59,9 @@ pub fn fill(
     }
     points.split_off(given.len())
 }
+
+/// Size of a bin over the power of two below the spacing in it: few bins are asked, with some points each.
+const BIN: f64 = 4.0;
 
 /// Points in square bins whose size follows their spacing by powers of two.
 #[derive(Default)]
@@ -57,7 +75,7 @@ impl LevelGrid {
     }
 
     fn bin(level: i32, p: Vector2) -> [i64; 2] {
-        let size = 2f64.powi(level);
+        let size = 2f64.powi(level) * BIN;
         [(p.x / size).floor() as i64, (p.y / size).floor() as i64]
     }
 
@@ -66,23 +84,26 @@ impl LevelGrid {
         self.levels.entry(level).or_default().entry(Self::bin(level, p)).or_default().push(index);
     }
 
-    /// Whether a point of about the spacing `h` that `counts` is nearer than `reach`.
-    fn any_within(
+    /// Points within a distance, with their levels; those whose spacing is far from a range of spacings are left out.
+    fn within_into(
         &self,
         reach: f64,
         p: Vector2,
-        h: f64,
+        spacings: [f64; 2],
         points: &[(Vector2, f64)],
-        counts: impl Fn(u32) -> bool,
-    ) -> bool {
-        let is_near = |i: &u32| (points[*i as usize].0 - p).norm() < reach && counts(*i);
-        (Self::level(h) - 1..=Self::level(h) + 1).any(|level| {
-            let Some(bins) = self.levels.get(&level) else { return false };
+        found: &mut Vec<(u32, Vector2, i32)>,
+    ) {
+        found.clear();
+        for level in Self::level(spacings[0]) - 1..=Self::level(spacings[1]) + 1 {
+            let Some(bins) = self.levels.get(&level) else { continue };
             // No point is lost by round-off.
             let margin = Vector2::repeat(reach * (1.0 + 1e-9));
             let ([i0, j0], [i1, j1]) = (Self::bin(level, p - margin), Self::bin(level, p + margin));
-            (i0..=i1).any(|i| (j0..=j1).any(|j| bins.get(&[i, j]).is_some_and(|bin| bin.iter().any(is_near))))
-        })
+            for bin in (i0..=i1).flat_map(|i| (j0..=j1).filter_map(move |j| bins.get(&[i, j]))) {
+                let near = bin.iter().map(|i| (*i, points[*i as usize].0, level));
+                found.extend(near.filter(|(_, q, _)| (q - p).norm() <= margin.x));
+            }
+        }
     }
 }
 
