@@ -65,6 +65,8 @@ impl BlockMatrix {
             result.columns.extend(columns);
         }
         result.blocks = vec![[0.0; 4]; result.columns.len()];
+        // Memory that is read before it is written is mapped twice, and the second time stops all threads.
+        result.blocks.par_chunks_mut(1 << 15).for_each(|blocks| blocks.fill([0.0; 4]));
         result
     }
 

@@ -129,6 +129,8 @@ impl<T: Scalar, F: Fn(f64, usize, usize) -> T + Sync> Job<'_, T, F> {
         let fronts = front.children.iter().map(|c| &self.tree.fronts[*c]);
         let children: Vec<Child<T>> = fronts.zip(&left).map(|(child, left)| Child::new(front, child, left)).collect();
         let (k, m) = front.size();
+        // Memory that is read before it is written is mapped twice, and the second time stops all threads.
+        own.fill(T::zero_impl());
         self.fill(front, own);
         children.iter().for_each(|child| child.add_to_panel(own, (k, m)));
         eliminate(MatMut::from_column_major_slice_mut(own, k + m, k), is_large)?;
