@@ -168,7 +168,7 @@ fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> O
     let body = body::body(&file, &files, &mut report)?;
     let cracks = cracks::cracks(&file, &body, &files, &mut report);
     let conditions = conditions::conditions(&file, &body, &material, &mut report);
-    let settings = nodes::settings(&file, &body, &cracks, &mut report);
+    let settings = nodes::settings(&file, &body, &cracks, &conditions.parts, &mut report);
     if report.problems.is_empty() && !conditions.acts && !cracks.acts {
         let mut problem = Problem::new("load", "nothing loads the body");
         problem.suggest(
@@ -189,7 +189,7 @@ fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> O
     };
     let title = file.title.clone().unwrap_or_else(|| super::build::default_title(path));
     let (cohesive, loading) = cohesive::cohesive(&file, cracks.cohesive, &mut report).unzip();
-    let model = SolidModel {
+    let mut model = SolidModel {
         title,
         body,
         crack_names: cracks.names,
@@ -199,6 +199,7 @@ fn build(document: &mut Document, path: &Path, problems: &mut Vec<Problem>) -> O
         cohesive,
     };
     let (settings, plan) = settings?;
+    nodes::spread_loads(&mut model, &settings.spacing);
     let growth = growth::growth(&file, &model.body, plan, &mut report);
     for name in values.unused {
         report.note(format!("parameters.{name}"), "nothing uses this parameter");

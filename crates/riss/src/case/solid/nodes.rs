@@ -8,7 +8,11 @@ use crate::case::build::report::Report;
 use crate::crack::{CrackFront, CrackSurface};
 use crate::geometry::surface::Surface;
 use crate::math::Vector3;
-use crate::nodes::solid::{MAX_SOLID_NODES, NodesOnFronts, Region, SpacingPlan, estimated_solid_nodes, wall_regions};
+use crate::model::{SolidModel, SurfaceConditions, VectorField};
+use crate::nodes::solid::{
+    MAX_SOLID_NODES, NodesOnFronts, Region, SolidSpacing, SpacingPlan, bend_regions, estimated_solid_nodes,
+    load_regions, spread_load, wall_regions,
+};
 
 /// Spacing over the cube root of the volume, if the case says none.
 const BODY_FRACTION: f64 = 1.0 / 20.0;
@@ -26,6 +30,7 @@ pub(super) fn settings(
     file: &SolidFile,
     body: &Surface,
     cracks: &Cracks,
+    parts: &[SurfaceConditions<3>],
     report: &mut Report,
 ) -> Option<(SolidSettings, SpacingPlan)> {
     let nodes = &file.nodes;
@@ -61,6 +66,9 @@ pub(super) fn settings(
     };
     let at_fronts: Vec<f64> = cracks.iter().zip(cohesive).map(at_front).collect();
     let mut regions = wall_regions(body, largest);
+    regions.extend(bend_regions(body, largest));
+    let tractions: Vec<&VectorField<3>> = parts.iter().map(|p| &p.traction).collect();
+    regions.extend(load_regions(body, &tractions, cracks, largest));
     for (index, finer) in nodes.finer.iter().enumerate() {
         regions.extend(finer_regions(finer, &format!("nodes.finer[{index}]"), body, report)?);
     }
@@ -81,6 +89,18 @@ pub(super) fn settings(
         points_on_front: file.fracture.points,
     };
     Some((settings, plan))
+}
+
+/// Loads act as nodes can take them.
+pub(super) fn spread_loads(model: &mut SolidModel, spacing: &SolidSpacing) {
+    let SolidModel { body, cracks, solid, .. } = model;
+    for (part, conditions) in solid.parts.iter_mut().enumerate() {
+        if let VectorField::Function(_) = conditions.traction
+            && let Some(spread) = spread_load(body, part as u32, &conditions.traction, cracks, spacing)
+        {
+            conditions.traction = spread;
+        }
+    }
 }
 
 fn finer_regions(finer: &Finer, key: &str, body: &Surface, report: &mut Report) -> Option<Vec<(Region, f64)>> {

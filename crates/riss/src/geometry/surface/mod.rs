@@ -142,6 +142,22 @@ impl Surface {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 
+    /// Pieces of a triangle whose edges are no longer than given: halves of halves.
+    pub fn for_each_piece(&self, triangle: u32, longest: f64, mut visit: impl FnMut(Triangle)) {
+        let mut open = vec![self.corners(triangle)];
+        while let Some([a, b, c]) = open.pop() {
+            let edges = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
+            let long = (0..3).fold(0, |m, k| if edges[k] > edges[m] { k } else { m });
+            if edges[long] > longest {
+                let [p, q, r] = [[a, b, c], [b, c, a], [c, a, b]][long];
+                let middle = 0.5 * (p + q);
+                open.extend([[p, middle, r], [middle, q, r]]);
+            } else {
+                visit([a, b, c]);
+            }
+        }
+    }
+
     /// Triangle across an edge, if it is not on the rim.
     pub fn across(&self, triangle: u32, edge: usize) -> Option<u32> {
         self.neighbors[triangle as usize][edge]

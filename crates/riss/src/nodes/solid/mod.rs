@@ -12,6 +12,8 @@ mod facets;
 mod inside;
 mod sites;
 pub mod spacing;
+mod spread;
+mod steep;
 #[cfg(test)]
 mod tests;
 mod walls;
@@ -25,6 +27,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sites::Sites;
 pub use spacing::{Region, SolidSpacing, SpacingPlan};
+pub use spread::spread_load;
+pub use steep::{bend_regions, load_regions};
 pub use walls::{thinnest_wall, wall_regions};
 
 /// Least distance of two nodes over the mean of their spacings.

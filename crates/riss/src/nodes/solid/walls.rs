@@ -27,21 +27,12 @@ fn walls(body: &Surface, largest: f64) -> Vec<Wall> {
     let longest = (PIECE * body.bounds().size().norm()).max(PIECE_SPACINGS * largest);
     let mut found = vec![];
     for t in 0..body.triangles().len() as u32 {
-        let mut open = vec![body.corners(t)];
-        while let Some([a, b, c]) = open.pop() {
-            let edges = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
-            let long = (0..3).fold(0, |m, k| if edges[k] > edges[m] { k } else { m });
-            if edges[long] > longest {
-                let [p, q, r] = [[a, b, c], [b, c, a], [c, a, b]][long];
-                let middle = 0.5 * (p + q);
-                open.extend([[p, middle, r], [middle, q, r]]);
-                continue;
-            }
-            let middle = (a + b + c) / 3.0;
+        body.for_each_piece(t, longest, |corners| {
+            let middle = corners.iter().sum::<Vector3>() / 3.0;
             if let Some(thickness) = body.wall(t, middle, THROUGH * largest) {
-                found.push(Wall { corners: [a, b, c], thickness });
+                found.push(Wall { corners, thickness });
             }
-        }
+        });
     }
     found
 }
