@@ -111,8 +111,8 @@ fn fronts_without_room_for_a_domain_are_told() {
 
 #[test]
 fn voids_with_few_nodes_are_told() {
-    let hollow = Block { more: "\n[[void]]\nname = \"pore\"\nball = { center = [3, 1, 2], radius = 0.3 }\n", ..SOUND };
-    // 4π 0.3² / 0.5² nodes or a few more where the front asks for finer ones.
+    let hollow = Block { more: "\n[[void]]\nname = \"pore\"\nball = { center = [3, 1, 2], radius = 0.1 }\n", ..SOUND };
+    // 4π 0.1² / 0.0625² nodes: on its wall an eighth of the largest spacing, and no less.
     check_one(&hollow, "pore", "nodes = ", &["nodes stand on the void `pore`", "[[nodes.finer]]"]);
 }
 
