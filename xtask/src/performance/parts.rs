@@ -10,7 +10,7 @@ use std::process::Command;
 /// Parts of the program by what their files or functions are called; the first that fits counts.
 const PARTS: [(&str, &[&str]); 12] = [
     // The assembly kernels of faer are all that has no names.
-    ("sparse factorization (faer)", &["faer", "gemm", "???:0x"]),
+    ("dense kernels and sparse factorization (faer)", &["faer", "gemm", "???:0x"]),
     ("triangulation (spade)", &["spade", "robust"]),
     ("compression", &["miniz_oxide"]),
     ("`nodes`", &["riss/src/nodes/", "riss::nodes::"]),

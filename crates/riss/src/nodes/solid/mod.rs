@@ -5,15 +5,16 @@
 //! meets at each node. Every two nodes keep [`CLOSENESS`] of their spacing apart, save pairs on faces and what narrow
 //! geometry forces together.
 
+mod bends;
 mod bins;
 mod curves;
 mod faces;
 mod facets;
 mod inside;
+mod loads;
 mod sites;
 pub mod spacing;
-mod spread;
-mod steep;
+mod spread_load;
 #[cfg(test)]
 mod tests;
 mod walls;
@@ -23,12 +24,13 @@ use crate::crack::CrackSurface;
 use crate::error::{Error, Result};
 use crate::geometry::obstacles::{OpaqueTriangles, opaque_part};
 use crate::geometry::surface::Surface;
+pub use bends::bend_regions;
+pub use loads::load_regions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sites::Sites;
 pub use spacing::{Region, SolidSpacing, SpacingPlan};
-pub use spread::spread_load;
-pub use steep::{bend_regions, load_regions};
+pub use spread_load::spread_load;
 pub use walls::{thinnest_wall, wall_regions};
 
 /// Least distance of two nodes over the mean of their spacings.

@@ -1,9 +1,9 @@
-//! Places of the boundary that ask for closer nodes: where loads change over short ways, and where walls are bent.
+//! Loads that change over short ways: nodes stand closer there, or what acts on them does not add up to the load.
 
 use super::spacing::Region;
 use crate::crack::CrackSurface;
 use crate::geometry::surface::Surface;
-use crate::geometry::triangle::{Triangle, area_vector};
+use crate::geometry::triangle::Triangle;
 use crate::math::Vector3;
 use crate::model::{SurfacePoint, VectorField};
 use rayon::prelude::*;
@@ -15,17 +15,8 @@ const PIECE: f64 = 1.0 / 4.0;
 const RISE_FRACTION: f64 = 0.5;
 /// No smaller share of the largest spacing is asked for by loads.
 const LEAST_AT_LOADS: f64 = 1.0 / 4.0;
-/// Spacing over the radius of a bent wall: equations at nodes farther apart hold the wall of a hole only loosely.
-const BEND_FRACTION: f64 = 1.0 / 4.0;
-/// No smaller share of the largest spacing is asked for by bends.
-const LEAST_AT_BENDS: f64 = 1.0 / 8.0;
 /// Tractions are looked at from this far inside, over the size of a piece.
 const OFF: f64 = 1e-6;
-/// Way around a bend from one triangle to the next over the sum of their heights: 1/2 for strips, 1/3 if they are equilateral.
-const HEIGHTS: f64 = 0.4;
-/// Angles between triangles of a bent wall [rad]: less is flat, more is an edge.
-const BENDS: [f64; 2] = [1e-3, 0.5];
-
 /// Regions where tractions change fast, with the spacings that they ask for; near cracks, whose fields may be what acts
 /// on the boundary, none.
 ///
@@ -105,33 +96,12 @@ fn pieces(body: &Surface, triangle: u32, traction: &VectorField<3>, longest: f64
     found
 }
 
-/// Regions of bent walls with the spacings that they ask for.
-pub fn bend_regions(body: &Surface, largest: f64) -> Vec<(Region, f64)> {
-    let mut regions = vec![];
-    for t in 0..body.triangles().len() as u32 {
-        let (corners, normal) = (body.corners(t), body.normals()[t as usize]);
-        let radius = |k: usize| {
-            let other = body.across(t, k)?;
-            let next = body.normals()[other as usize];
-            let angle = normal.cross(&next).norm().atan2(normal.dot(&next));
-            let edge = (corners[(k + 1) % 3] - corners[k]).norm();
-            let heights = [t, other].map(|t| area_vector(body.corners(t)).norm() / edge);
-            (angle > BENDS[0] && angle < BENDS[1]).then(|| HEIGHTS * (heights[0] + heights[1]) / angle)
-        };
-        let least = (0..3).filter_map(radius).fold(f64::INFINITY, f64::min);
-        if BEND_FRACTION * least < largest {
-            regions.push((Region::Triangle(corners), (BEND_FRACTION * least).max(LEAST_AT_BENDS * largest)));
-        }
-    }
-    regions
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::SolidSpacing;
     use super::*;
     use crate::geometry::aabb::Aabb;
-    use crate::geometry::surface::makers::{ball, cuboid};
+    use crate::geometry::surface::makers::cuboid;
 
     fn block(size: f64) -> Surface {
         let upper = Vector3::repeat(size);
@@ -156,15 +126,5 @@ mod tests {
         }
         let linear = asked(&body, |p| Vector3::x() * (p.z - 5.0));
         assert_eq!(linear.at(Vector3::new(10.0, 5.0, 9.0)), 1.0);
-    }
-
-    #[test]
-    fn walls_of_narrow_holes_ask_for_close_nodes() {
-        assert!(bend_regions(&block(4.0), 1.0).is_empty());
-        let mut mesh = block(4.0).mesh();
-        mesh.append(&ball(Vector3::repeat(2.0), 0.8, "void"));
-        let field = SolidSpacing::new(0.5, 0.2, bend_regions(&Surface::closed(mesh, 0.5).unwrap(), 0.5));
-        assert!((field.at(Vector3::new(2.0, 2.0, 2.8)) - 0.2).abs() < 0.05);
-        assert_eq!(field.at(Vector3::new(0.1, 0.1, 0.1)), 0.5);
     }
 }

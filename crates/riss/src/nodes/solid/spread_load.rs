@@ -4,9 +4,10 @@
 //! and its moment, smooth loads stay as they are up to third order, and what nodes a spacing apart take of it adds up.
 
 use super::SolidSpacing;
-use super::steep::{Steep, is_near_crack, steep_pieces};
+use super::loads::{Steep, is_near_crack, steep_pieces};
 use crate::crack::CrackSurface;
 use crate::geometry::surface::Surface;
+use crate::geometry::surface::makers::across;
 use crate::math::gauss_legendre::gauss_legendre;
 use crate::math::{Vector2, Vector3};
 use crate::model::{SurfacePoint, VectorField};
@@ -39,7 +40,7 @@ impl Spread {
         if is_near_crack(&self.cracks, at.position, CLEAR * spacing) {
             return self.load.value(at);
         }
-        let [s, t] = crate::geometry::surface::makers::across(at.normal);
+        let [s, t] = across(at.normal);
         let inward = at.sight - at.position;
         let there = |p: &Vector2| {
             let position = at.position + (s * p.x + t * p.y) * (RADIUS * spacing);
