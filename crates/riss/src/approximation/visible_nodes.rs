@@ -5,6 +5,7 @@ use crate::geometry::obstacles::Opaque;
 use crate::geometry::point_tree::PointTree;
 use crate::math::Vector;
 use crate::nodes::cloud::Cloud;
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// A cloud with a tree over its nodes and what hides them.
@@ -51,7 +52,7 @@ impl<const D: usize> VisibleNodes<D> {
         wanted: usize,
         found: &mut Vec<(f64, u32)>,
     ) -> f64 {
-        let spacing = own.map_or_else(|| self.spacing_near(at, found), |i| self.cloud.spacings[i as usize]);
+        let spacing = own.map_or_else(|| self.spacing_near(at), |i| self.cloud.spacings[i as usize]);
         let needed = wanted - usize::from(own.is_some());
         let mut radius = FIRST * spacing * ball_radius::<D>(wanted);
         loop {
@@ -60,8 +61,13 @@ impl<const D: usize> VisibleNodes<D> {
             let is_all = radius > self.extent;
             if found.len() > needed || is_all {
                 let around = Aabb::around(at, Vector::repeat(radius + self.shift)).including(sight);
-                if !self.obstacles.is_clear(&around) {
-                    found.retain(|&(_, j)| self.obstacles.visible(sight, self.cloud.sights[j as usize]));
+                if self.obstacles.is_clear(&around) {
+                    if found.len() > needed {
+                        found.select_nth_unstable_by(needed, nearer);
+                    }
+                } else {
+                    found.sort_unstable_by(nearer);
+                    self.keep_seen(sight, needed + 1, found);
                 }
                 if found.len() > needed || is_all {
                     break;
@@ -74,20 +80,31 @@ impl<const D: usize> VisibleNodes<D> {
             let farthest = found.iter().map(|f| f.0).reduce(f64::max);
             return 1.1 * farthest.map_or(radius, f64::sqrt);
         }
-        let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let limit = found.select_nth_unstable_by(needed, order).1.0;
+        let limit = found[needed].0;
         // Nodes as far as the first one that is left out have no weight.
         found.truncate(needed);
         found.retain(|f| f.0 < limit);
         limit.sqrt()
     }
 
+    /// Keeps the first `n` nodes that are seen: sight is dear, and most nodes are farther away than those wanted.
+    fn keep_seen(&self, sight: Vector<D>, n: usize, found: &mut Vec<(f64, u32)>) {
+        let mut kept = 0;
+        for k in 0..found.len() {
+            if kept < n && self.obstacles.visible(sight, self.cloud.sights[found[k].1 as usize]) {
+                found[kept] = found[k];
+                kept += 1;
+            }
+        }
+        found.truncate(kept);
+    }
+
     /// The nearest node that sees a point, with working memory; none if no node does.
     pub fn nearest(&self, at: Vector<D>, found: &mut Vec<(f64, u32)>) -> Option<u32> {
-        let mut radius = self.spacing_near(at, found);
+        let mut radius = self.spacing_near(at);
         loop {
             self.tree.within_into(at, radius, found);
-            found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            found.sort_unstable_by(nearer);
             let is_clear = self.obstacles.is_clear(&Aabb::around(at, Vector::repeat(radius + self.shift)));
             let sees = |j: u32| is_clear || self.obstacles.visible(at, self.cloud.sights[j as usize]);
             let nearest = found.iter().map(|f| f.1).find(|j| sees(*j));
@@ -98,21 +115,15 @@ impl<const D: usize> VisibleNodes<D> {
         }
     }
 
-    /// Spacing of a node near a point.
-    fn spacing_near(&self, at: Vector<D>, found: &mut Vec<(f64, u32)>) -> f64 {
-        let mut radius = self.extent / (self.cloud.len() as f64).powf(1.0 / D as f64);
-        loop {
-            self.tree.within_into(at, radius, found);
-            let nearest = found.iter().min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            if let Some((_, j)) = nearest {
-                return self.cloud.spacings[*j as usize];
-            }
-            if radius > self.extent {
-                return radius;
-            }
-            radius *= 2.0;
-        }
+    /// Spacing of the nearest node.
+    fn spacing_near(&self, at: Vector<D>) -> f64 {
+        self.tree.nearest(at).map_or(self.extent, |j| self.cloud.spacings[j as usize])
     }
+}
+
+/// By distance, then by index.
+fn nearer(a: &(f64, u32), b: &(f64, u32)) -> Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
 }
 
 /// Radius of a ball that holds `n` unit cells.

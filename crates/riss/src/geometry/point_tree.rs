@@ -68,6 +68,37 @@ impl<const D: usize> PointTree<D> {
         }
         found.truncate(n);
     }
+
+    /// Index of the point nearest to `center`, of the first of those as near; none if there are no points.
+    pub fn nearest(&self, center: Vector<D>) -> Option<u32> {
+        let mut best = (f64::INFINITY, u32::MAX);
+        let mut stack = [0u32; 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let index = stack[depth];
+            let node = &self.nodes[index as usize];
+            if node.bounds.squared_distance(&center) > best.0 * (1.0 + 1e-12) {
+                continue;
+            }
+            if node.count > 0 {
+                for (p, i) in &self.points[node.start as usize..][..node.count as usize] {
+                    let d2 = (p - center).norm_squared();
+                    if d2 < best.0 || (d2 == best.0 && *i < best.1) {
+                        best = (d2, *i);
+                    }
+                }
+                continue;
+            }
+            // The nearer half is looked at first.
+            let [left, right] = [index + 1, node.start];
+            let distance = |i: u32| self.nodes[i as usize].bounds.squared_distance(&center);
+            let halves = if distance(left) <= distance(right) { [right, left] } else { [left, right] };
+            stack[depth..depth + 2].copy_from_slice(&halves);
+            depth += 2;
+        }
+        (best.1 != u32::MAX).then_some(best.1)
+    }
 }
 
 fn build<const D: usize>(items: &mut [(Vector<D>, u32)], offset: usize, nodes: &mut Vec<TreeNode<D>>) {
@@ -108,6 +139,9 @@ mod tests {
             let all = points.iter().zip(0..).map(|(p, i)| ((p - center).norm_squared(), i));
             let naive: Vec<(f64, u32)> = all.filter(|f| f.0 <= radius * radius).collect();
             prop_assert_eq!(found, naive);
+            let order = |p: &(f64, u32), q: &(f64, u32)| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1));
+            let all = points.iter().zip(0..).map(|(p, i)| ((p - center).norm_squared(), i));
+            prop_assert_eq!(PointTree::new(&points).nearest(center), all.min_by(order).map(|f| f.1));
         }
     }
 }

@@ -129,16 +129,35 @@ fn split(conditions: &SurfaceConditions<3>, at: &SurfacePoint<3>) -> (Matrix<3>,
     (free, moved)
 }
 
-/// Cuts a triangle in four until its edges are short.
+/// Cuts a triangle in halves until its edges are short. It is the longest edge that is halved: a strip of a mesh becomes a
+/// row of pieces as wide as the strip.
 pub(super) fn divide(corners: Triangle, spacing: &SolidSpacing, visit: &mut dyn FnMut(Triangle)) {
-    let longest = (0..3).map(|k| (corners[k] - corners[(k + 1) % 3]).norm()).fold(0.0, f64::max);
-    let center = (corners[0] + corners[1] + corners[2]) / 3.0;
-    if longest <= EDGE * spacing.at(center) {
+    let length2 = |k: usize| (corners[k] - corners[(k + 1) % 3]).norm_squared();
+    let longest = (0..3).fold(0, |best, k| if length2(k) > length2(best) { k } else { best });
+    let limit = EDGE * spacing.at((corners[0] + corners[1] + corners[2]) / 3.0);
+    if length2(longest) <= limit * limit {
         return visit(corners);
     }
-    let middles: [Vector3; 3] = std::array::from_fn(|k| (corners[k] + corners[(k + 1) % 3]) * 0.5);
-    for k in 0..3 {
-        divide([corners[k], middles[k], middles[(k + 2) % 3]], spacing, visit);
+    let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+    let middle = (a + b) * 0.5;
+    divide([a, middle, c], spacing, visit);
+    divide([middle, b, c], spacing, visit);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_are_cut_across() {
+        let strip = [Vector3::zeros(), Vector3::new(64.0, 0.0, 0.0), Vector3::new(64.0, 1.0, 0.0)];
+        let (mut n, mut area) = (0, Vector3::zeros());
+        divide(strip, &SolidSpacing::new(2.0, 0.2, vec![]), &mut |piece| {
+            n += 1;
+            area += area_vector(piece);
+            assert!((0..3).all(|k| (piece[k] - piece[(k + 1) % 3]).norm() <= 2.0));
+        });
+        assert!((area - area_vector(strip)).norm() < 1e-12);
+        assert!((32..=128).contains(&n), "{n}");
     }
-    divide(middles, spacing, visit);
 }
