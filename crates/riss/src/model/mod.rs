@@ -22,7 +22,8 @@ pub use domain::{BoundaryPart, Domain, EdgeId, PartId};
 pub use field::{FieldPoint, ScalarField};
 pub use load::{BodyForce, BoundaryLoad, CrackFaceLoad, PointLoad, TractionValue};
 pub use solid::{
-    DirectedDisplacement, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField, VectorFunction,
+    DirectedDisplacement, SAME_DIRECTION, Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField,
+    VectorFunction,
 };
 pub use solid_model::SolidModel;
 use std::sync::Arc;

@@ -92,6 +92,19 @@ pub struct DirectedDisplacement<const D: usize> {
     pub value: VectorField<D>,
 }
 
+/// Prescribed directions that differ by less than this sine count as one.
+pub const SAME_DIRECTION: f64 = 0.05;
+
+impl<const D: usize> DirectedDisplacement<D> {
+    /// Its direction where the surface has this normal.
+    pub fn unit(&self, normal: Vector<D>) -> Vector<D> {
+        match self.direction {
+            SolidDirection::Fixed(d) => d,
+            SolidDirection::Normal => normal,
+        }
+    }
+}
+
 /// What holds on a part of the boundary: displacement in some directions, traction in the others.
 #[derive(Clone, Debug)]
 pub struct SurfaceConditions<const D: usize> {
@@ -116,6 +129,12 @@ impl<const D: usize> SurfaceConditions<D> {
     pub fn displacement(value: VectorField<D>) -> Self {
         let along = |d| DirectedDisplacement { direction: SolidDirection::Fixed(axis(d)), value: value.clone() };
         Self { displacements: (0..D).map(along).collect(), traction: VectorField::zero() }
+    }
+
+    /// Whether displacements in a direction are not prescribed where the surface has this normal.
+    pub fn is_free(&self, direction: Vector<D>, normal: Vector<D>) -> bool {
+        let across = |held: Vector<D>| (direction - held * held.dot(&direction)).norm();
+        self.displacements.iter().all(|d| across(d.unit(normal)) > SAME_DIRECTION)
     }
 
     /// A plane of symmetry: no displacement across it, no traction along it.

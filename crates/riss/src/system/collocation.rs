@@ -7,6 +7,7 @@
 use super::block_rows::{Block, BlockRows, CHUNK, RowChunk};
 use super::collocation_settings::CollocationSettings;
 use super::node_conditions::{NodeConditions, Strong, StrongTerm};
+use super::support_ends::support_ends;
 use super::tied_faces::Row;
 use crate::approximation::visible_nodes::ball_radius;
 use crate::approximation::{ConstrainedMls, EnrichedFront, FitBuffer, ShapeFunctions};
@@ -33,6 +34,8 @@ pub struct Collocation<const D: usize> {
     pub origins: Vec<u32>,
     /// Choices.
     pub settings: CollocationSettings,
+    /// Whether supports end at each node amid a surface.
+    support_ends: Vec<bool>,
 }
 
 /// The equations of all nodes: residual `A u - f` and tangent `A` of Newton's method [C3D, Eqs. 19 to 22].
@@ -75,13 +78,19 @@ impl<const D: usize> Collocation<D> {
             let i = i as usize;
             own.push(cloud.positions[i], cloud.sights[i], cloud.spacings[i], cloud.places[i].clone());
         }
+        let support_ends = support_ends(&solid, &own);
         let approximation = ConstrainedMls::new(own, obstacles, fronts, settings.approximation);
-        Self { solid, approximation, origins, settings }
+        Self { solid, approximation, origins, settings, support_ends }
     }
 
     /// The nodes in the order of the unknowns.
     pub fn cloud(&self) -> &Cloud<D> {
         self.approximation.cloud()
+    }
+
+    /// Whether supports end amid a surface.
+    pub fn has_support_ends(&self) -> bool {
+        self.support_ends.contains(&true)
     }
 
     /// Writes the equations of all nodes.
@@ -142,7 +151,7 @@ impl<const D: usize> Collocation<D> {
     /// its equation.
     pub(super) fn layer(&self, node: u32) -> Result<Row<D>> {
         let Scratch { mut buffer, mut shape, mut entries, mut conditions } = Scratch::default();
-        conditions.look_up(&self.solid, self.cloud(), node as usize, &self.settings);
+        self.look_up(node, &mut conditions);
         let (position, sight) = (self.cloud().positions[node as usize], self.cloud().sights[node as usize]);
         let radius = self.approximation.at_node(node, sight, &mut buffer, &mut shape)?;
         let h = radius / ball_radius::<D>(shape.neighbors.len());
@@ -155,9 +164,14 @@ impl<const D: usize> Collocation<D> {
         Ok(Row { columns, blocks, load: factor * load })
     }
 
+    fn look_up(&self, node: u32, conditions: &mut NodeConditions<D>) {
+        let node = node as usize;
+        conditions.look_up(&self.solid, self.cloud(), node, &self.settings, self.support_ends[node]);
+    }
+
     fn add_row(&self, node: u32, scratch: &mut Scratch<D>, part: &mut Part<D>) -> Result<()> {
         let Scratch { buffer, shape, entries, conditions } = scratch;
-        conditions.look_up(&self.solid, self.cloud(), node as usize, &self.settings);
+        self.look_up(node, conditions);
         let free = Matrix::identity() - conditions.fixed;
         entries.clear();
         entries.push((node, to_block(&conditions.fixed)));

@@ -29,6 +29,7 @@ mod safeguard;
 pub mod settings;
 pub mod solve;
 pub mod sparse_lu;
+mod support_ends;
 pub mod tied_faces;
 pub mod tip_factors;
 

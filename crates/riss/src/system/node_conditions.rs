@@ -4,12 +4,11 @@
 //! surfaces without prescribed displacements, averaged by their angles at the node [C3D, Eqs. 44, 45].
 
 use super::collocation_settings::{CollocationSettings, ConcaveCorners, FrontNodes};
+use super::support_ends::ends_at;
 use crate::math::{Matrix, Vector};
-use crate::model::{Solid, SolidDirection, SurfaceConditions, SurfacePoint, VectorField};
+use crate::model::{SAME_DIRECTION, Solid, SurfaceConditions, SurfacePoint, VectorField};
 use crate::nodes::cloud::{Cloud, Facet, Place, SurfaceId};
 
-/// Prescribed directions that differ by less than this sine count as one.
-const SAME_DIRECTION: f64 = 0.05;
 /// A corner is concave if the material behind one facet rises above another by more than this sine.
 const CONCAVE: f64 = 0.05;
 
@@ -56,7 +55,16 @@ impl<const D: usize> Default for NodeConditions<D> {
 
 impl<const D: usize> NodeConditions<D> {
     /// Looks up what holds at a node, in place of what is there.
-    pub fn look_up(&mut self, solid: &Solid<D>, cloud: &Cloud<D>, node: usize, settings: &CollocationSettings) {
+    ///
+    /// - `is_support_end`: whether it takes no part in supports that end there amid a surface
+    pub fn look_up(
+        &mut self,
+        solid: &Solid<D>,
+        cloud: &Cloud<D>,
+        node: usize,
+        settings: &CollocationSettings,
+        is_support_end: bool,
+    ) {
         (self.fixed, self.displacement) = (Matrix::zeros(), Vector::zeros());
         self.terms.clear();
         self.face_share = 0.0;
@@ -65,8 +73,13 @@ impl<const D: usize> NodeConditions<D> {
             Place::Inside => &[],
             Place::Surface(facets) | Place::Front { facets, .. } => facets,
         };
-        for facet in facets {
+        let ends = |facet: &&Facet<D>| is_support_end && ends_at(solid, position, facet, facets);
+        for facet in facets.iter().filter(|f| !ends(f)) {
             self.prescribe(solid, position, facet);
+        }
+        if is_support_end {
+            self.terms.push(StrongTerm { equation: Strong::Fit, load: Vector::zeros(), sight });
+            return;
         }
         if self.fixed.trace() > D as f64 - 0.5 {
             return;
@@ -96,10 +109,7 @@ impl<const D: usize> NodeConditions<D> {
         let Some(conditions) = part(solid, facet) else { return };
         let at = SurfacePoint { position, normal: facet.normal, sight: facet.sight };
         for prescribed in &conditions.displacements {
-            let direction = match prescribed.direction {
-                SolidDirection::Fixed(d) => d,
-                SolidDirection::Normal => facet.normal,
-            };
+            let direction = prescribed.unit(facet.normal);
             let rest = direction - self.fixed * direction;
             let length = rest.norm();
             if length > SAME_DIRECTION {
@@ -151,7 +161,7 @@ impl<const D: usize> NodeConditions<D> {
 }
 
 /// Conditions of a facet on the boundary.
-fn part<'a, const D: usize>(solid: &'a Solid<D>, facet: &Facet<D>) -> Option<&'a SurfaceConditions<D>> {
+pub(super) fn part<'a, const D: usize>(solid: &'a Solid<D>, facet: &Facet<D>) -> Option<&'a SurfaceConditions<D>> {
     match facet.surface {
         SurfaceId::Part(i) => Some(&solid.parts[i as usize]),
         SurfaceId::Face { .. } => None,

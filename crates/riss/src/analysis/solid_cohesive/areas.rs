@@ -1,6 +1,6 @@
 //! Area of crack face that belongs to each pair of nodes, and how much of it is cohesive.
 
-use super::work::divide;
+use super::work::EDGE;
 use crate::geometry::triangle::area_vector;
 use crate::math::Vector3;
 use crate::model::{CohesiveCrack, SolidModel};
@@ -37,7 +37,7 @@ pub(super) fn face_areas(
     let surface = &model.cracks[crack].surface;
     let mut pieces = vec![];
     for t in 0..surface.triangles().len() as u32 {
-        divide(surface.corners(t), spacing, &mut |piece| pieces.push(piece));
+        surface.for_each_piece(t, |p| EDGE * spacing.at(p), |piece| pieces.push(piece));
     }
     let nearest = |p: Vector3| {
         let apart = |k: &usize| (positions[*k] - p).norm_squared();

@@ -7,6 +7,7 @@
 use super::areas::FaceArea;
 use super::energy::Energy;
 use super::free_faces::FreeFaces;
+use super::reactions::{missed_work, virtual_field};
 use super::work::Work;
 use crate::analysis::cohesive::Condensed;
 use crate::error::{Error, Result};
@@ -38,6 +39,8 @@ pub(super) struct TiedBody<'a> {
     pub solver: PreparedSolver<'a, 3>,
     pub work: Work,
     cells: NodeCells,
+    /// What holds each node.
+    system: &'a CollocationSystem<3>,
     /// Unit vectors of the motions of the whole body that nothing holds.
     free_motions: Vec<Vec<f64>>,
 }
@@ -82,14 +85,14 @@ impl<'a> TiedBody<'a> {
     /// Those of the solver.
     pub fn new(
         collocation: &Collocation<3>,
-        system: &CollocationSystem<3>,
+        system: &'a CollocationSystem<3>,
         tied: &'a TiedFaces<3>,
         work: Work,
         cells: NodeCells,
     ) -> Result<Self> {
         let free_motions = collocation.free_motions(&system.fixed)?;
         let border = tied.tied_motions(free_motions.clone());
-        Ok(Self { tied, solver: collocation.prepare(&tied.system, border)?, work, cells, free_motions })
+        Ok(Self { tied, solver: collocation.prepare(&tied.system, border)?, work, cells, system, free_motions })
     }
 
     /// Displacements of a load factor with openings.
@@ -156,12 +159,15 @@ pub(super) fn condense(
     }
     fields.push(&known.of_load);
     let last = fields.len() - 1;
+    let virtual_field = virtual_field(collocation, body.system);
+    fields.extend(&virtual_field);
+    let supported = fields.len() - 1;
     let all = DMatrix::from_fn(fields.len(), known.of_load.len(), |field, dof| fields[field][dof]);
     let energy = Energy::new(collocation, &body.cells, &all)?;
     check_stiffness(collocation, &energy, &columns, areas)?;
     let of_field = |k: usize| body.work.of(fields[k]) + free.work(fields[k]) + energy.body_work[k];
-    let of_loads: Vec<f64> = (0..=last).into_par_iter().map(of_field).collect();
-    let mut tractions: Vec<Vec<f64>> = fields
+    let mut of_loads: Vec<f64> = (0..fields.len()).into_par_iter().map(of_field).collect();
+    let mut tractions: Vec<Vec<f64>> = fields[..=last]
         .par_iter()
         .enumerate()
         .map(|(k, field)| body.tractions(field, if k == last { 1.0 } else { 0.0 }))
@@ -189,8 +195,16 @@ pub(super) fn condense(
         }
     }
     let by_load = tractions.pop().unwrap_or_default();
-    let mut of_reactions: Vec<f64> = energy.mutual.row(last).iter().copied().collect();
-    of_reactions[last] -= of_loads[last];
+    let mut of_reactions: Vec<f64> = (0..=last).map(|k| energy.mutual[(supported, k)]).collect();
+    of_reactions[last] -= of_loads[supported];
+    if let Some(field) = &virtual_field {
+        let (material, volume) = (&collocation.solid.material, body.cells.volumes.iter().sum());
+        for (k, work) in of_reactions.iter_mut().enumerate() {
+            let gradients = [energy.gradients[k], energy.gradients[supported]];
+            *work += missed_work(material, volume, &body.work, field, gradients);
+        }
+    }
+    of_loads.truncate(last + 1);
     Ok(Condensed { rows, columns, areas: own_areas, by_load, by_opening: tractions, of_loads, of_reactions })
 }
 

@@ -1,7 +1,8 @@
 //! Cohesive cracks on given surfaces: tied until they reach their strength, then opening along the path of equilibrium.
 //!
 //! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with [`energy`] between their
-//! displacement fields, what loads do in [`work`], and areas of faces in [`areas`] and [`free_faces`]; what then happens along
+//! displacement fields, what loads do in [`work`] and supports in
+//! [`reactions`], and areas of faces in [`areas`] and [`free_faces`]; what then happens along
 //! the path of equilibrium is that of [`super::cohesive`]. Surfaces that grow do so by [`growing`].
 
 mod areas;
@@ -9,6 +10,7 @@ mod condensed;
 mod energy;
 mod free_faces;
 mod growing;
+mod reactions;
 mod work;
 
 use super::cohesive::{

@@ -3,16 +3,16 @@
 use crate::analysis::cohesive::resultant;
 use crate::approximation::{FitBuffer, ShapeFunctions};
 use crate::error::Result;
-use crate::geometry::triangle::{Triangle, area_vector};
+use crate::geometry::triangle::area_vector;
 use crate::integration::rules::triangle_rule;
 use crate::math::{Matrix, Vector3};
-use crate::model::{SolidDirection, SolidModel, SurfaceConditions, SurfacePoint};
+use crate::model::{SolidModel, SurfaceConditions, SurfacePoint};
 use crate::nodes::solid::SolidSpacing;
 use crate::system::Collocation;
 use rayon::prelude::*;
 
 /// Longest edge of a triangle of integration over the spacing of nodes there.
-const EDGE: f64 = 1.0;
+pub(super) const EDGE: f64 = 1.0;
 /// Depth from which points on the boundary look at nodes, over the spacing there.
 const SIGHT: f64 = 1e-3;
 
@@ -27,6 +27,8 @@ pub(super) struct Work {
     /// By component of the displacement of each node: what it adds to the integral of `u ⊗ n` in the directions that are
     /// free [area].
     outside: Vec<[Matrix<3>; 3]>,
+    /// The same integral of what is prescribed, in the directions that are [length³].
+    pub held: Matrix<3>,
 }
 
 /// What a point of integration adds.
@@ -37,7 +39,7 @@ struct Share {
     free: Matrix<3>,
     area: Vector3,
     force: Vector3,
-    prescribed: f64,
+    prescribed: Vector3,
 }
 
 impl Work {
@@ -49,8 +51,8 @@ impl Work {
         let mut triangles = vec![];
         for t in 0..model.body.triangles().len() as u32 {
             let part = model.body.part_of(t);
-            let whole = model.body.corners(t);
-            divide(whole, spacing, &mut |piece| triangles.push((part, model.body.normals()[t as usize], piece)));
+            let normal = model.body.normals()[t as usize];
+            model.body.for_each_piece(t, |p| EDGE * spacing.at(p), |piece| triangles.push((part, normal, piece)));
         }
         let rule = triangle_rule(2);
         let points: Vec<_> = triangles
@@ -72,7 +74,7 @@ impl Work {
             collocation.approximation.at_point(*position, sight, fit, shape)?;
             let values = shape.neighbors.iter().copied().zip(shape.values.iter().copied()).collect();
             let force = free * conditions.traction.value(&at) * *weight;
-            Ok(Share { values, free, area: normal * *weight, force, prescribed: moved.norm() })
+            Ok(Share { values, free, area: normal * *weight, force, prescribed: moved })
         };
         let shares = points.par_iter().map_init(Default::default, share).collect::<Result<Vec<_>>>()?;
         let n = collocation.cloud().len();
@@ -81,6 +83,7 @@ impl Work {
             resultant: 0.0,
             prescribed: 0.0,
             outside: vec![[Matrix::zeros(); 3]; n],
+            held: Matrix::zeros(),
         };
         let (mut sum, mut sizes) = (Vector3::zeros(), 0.0);
         for share in shares {
@@ -92,7 +95,8 @@ impl Work {
             }
             sum += share.force;
             sizes += share.force.norm();
-            work.prescribed = work.prescribed.max(share.prescribed);
+            work.held += share.prescribed * share.area.transpose();
+            work.prescribed = work.prescribed.max(share.prescribed.norm());
         }
         work.resultant = resultant(sum.norm(), sizes);
         Ok(work)
@@ -115,10 +119,7 @@ impl Work {
 fn split(conditions: &SurfaceConditions<3>, at: &SurfacePoint<3>) -> (Matrix<3>, Vector3) {
     let (mut free, mut moved) = (Matrix::<3>::identity(), Vector3::zeros());
     for prescribed in &conditions.displacements {
-        let direction = match prescribed.direction {
-            SolidDirection::Fixed(d) => d,
-            SolidDirection::Normal => at.normal,
-        };
+        let direction = prescribed.unit(at.normal);
         let rest = free * direction;
         if let Some(unit) = rest.try_normalize(0.05) {
             let value = prescribed.value.value(at).dot(&direction) - moved.dot(&direction);
@@ -127,37 +128,4 @@ fn split(conditions: &SurfaceConditions<3>, at: &SurfacePoint<3>) -> (Matrix<3>,
         }
     }
     (free, moved)
-}
-
-/// Cuts a triangle in halves until its edges are short. It is the longest edge that is halved: a strip of a mesh becomes a
-/// row of pieces as wide as the strip.
-pub(super) fn divide(corners: Triangle, spacing: &SolidSpacing, visit: &mut dyn FnMut(Triangle)) {
-    let length2 = |k: usize| (corners[k] - corners[(k + 1) % 3]).norm_squared();
-    let longest = (0..3).fold(0, |best, k| if length2(k) > length2(best) { k } else { best });
-    let limit = EDGE * spacing.at((corners[0] + corners[1] + corners[2]) / 3.0);
-    if length2(longest) <= limit * limit {
-        return visit(corners);
-    }
-    let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
-    let middle = (a + b) * 0.5;
-    divide([a, middle, c], spacing, visit);
-    divide([middle, b, c], spacing, visit);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn strips_are_cut_across() {
-        let strip = [Vector3::zeros(), Vector3::new(64.0, 0.0, 0.0), Vector3::new(64.0, 1.0, 0.0)];
-        let (mut n, mut area) = (0, Vector3::zeros());
-        divide(strip, &SolidSpacing::new(2.0, 0.2, vec![]), &mut |piece| {
-            n += 1;
-            area += area_vector(piece);
-            assert!((0..3).all(|k| (piece[k] - piece[(k + 1) % 3]).norm() <= 2.0));
-        });
-        assert!((area - area_vector(strip)).norm() < 1e-12);
-        assert!((32..=128).contains(&n), "{n}");
-    }
 }

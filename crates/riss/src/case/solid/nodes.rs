@@ -11,7 +11,7 @@ use crate::math::Vector3;
 use crate::model::{SolidModel, SurfaceConditions, VectorField};
 use crate::nodes::solid::{
     MAX_SOLID_NODES, NodesOnFronts, Region, SolidSpacing, SpacingPlan, bend_regions, estimated_solid_nodes,
-    load_regions, spread_load, wall_regions,
+    load_regions, spread_load, support_regions, wall_regions,
 };
 
 /// Spacing over the cube root of the volume, if the case says none.
@@ -69,6 +69,7 @@ pub(super) fn settings(
     regions.extend(bend_regions(body, largest));
     let tractions: Vec<&VectorField<3>> = parts.iter().map(|p| &p.traction).collect();
     regions.extend(load_regions(body, &tractions, cracks, largest));
+    regions.extend(support_regions(body, parts, largest));
     for (index, finer) in nodes.finer.iter().enumerate() {
         regions.extend(finer_regions(finer, &format!("nodes.finer[{index}]"), body, report)?);
     }

@@ -142,13 +142,16 @@ impl Surface {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 
-    /// Pieces of a triangle whose edges are no longer than given: halves of halves.
-    pub fn for_each_piece(&self, triangle: u32, longest: f64, mut visit: impl FnMut(Triangle)) {
+    /// Pieces of a triangle whose edges are no longer than given: halves of halves, so that a strip becomes a row of pieces
+    /// as wide as it is.
+    ///
+    /// - `longest`: of a piece with this center
+    pub fn for_each_piece(&self, triangle: u32, longest: impl Fn(Vector3) -> f64, mut visit: impl FnMut(Triangle)) {
         let mut open = vec![self.corners(triangle)];
         while let Some([a, b, c]) = open.pop() {
             let edges = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
             let long = (0..3).fold(0, |m, k| if edges[k] > edges[m] { k } else { m });
-            if edges[long] > longest {
+            if edges[long] > longest((a + b + c) / 3.0) {
                 let [p, q, r] = [[a, b, c], [b, c, a], [c, a, b]][long];
                 let middle = 0.5 * (p + q);
                 open.extend([[p, middle, r], [middle, q, r]]);

@@ -13,6 +13,8 @@ use std::f64::consts::PI;
 /// curvature, which clears the chord of four spacings, and no more than the second over the spacing.
 const LIFT: f64 = 2.0;
 const MOST_LIFT: f64 = 0.4;
+/// Move along the surface over the lift.
+const ALONG: f64 = 0.5;
 /// Normals of cracks are means over this far around a node, over its spacing: where triangles are larger, those of the
 /// plane triangles on which the nodes stand.
 const AROUND: f64 = 0.25;
@@ -106,7 +108,9 @@ fn boundary_facets(sites: &Sites<'_>, site: &Site, wedges: &[Wedge], shift: f64)
         let mean = own.iter().map(|w| w.normal * w.angle()).sum::<Vector3>();
         let mean = mean.try_normalize(0.0).unwrap_or(own[0].normal);
         let normal = body.parts()[part as usize].shape.normal(site.position, mean);
-        let sight = site.position + (inside * super::super::triangulation::SIGHT_SHIFT * site.spacing - normal * shift);
+        // Along the surface too as it is lifted: at a concave edge it must not look past the other surface.
+        let along = (ALONG * shift).max(SIGHT_SHIFT * site.spacing);
+        let sight = site.position + inside * along - normal * shift;
         Some((Facet { surface: SurfaceId::Part(part), normal, sight, angle }, shift))
     };
     patches.iter().filter_map(one).collect()

@@ -86,13 +86,17 @@ fn pieces(body: &Surface, triangle: u32, traction: &VectorField<3>, longest: f64
         traction.value(&SurfacePoint { position, normal, sight })
     };
     let mut found = vec![];
-    body.for_each_piece(triangle, longest, |corners| {
-        let values = corners.map(value);
-        let slope = |i: usize, j: usize| (values[i] - values[j]).norm() / (corners[i] - corners[j]).norm();
-        let slope = slope(0, 1).max(slope(1, 2)).max(slope(2, 0));
-        let most = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        found.push(Steep { corners, normal, most, slope });
-    });
+    body.for_each_piece(
+        triangle,
+        |_| longest,
+        |corners| {
+            let values = corners.map(value);
+            let slope = |i: usize, j: usize| (values[i] - values[j]).norm() / (corners[i] - corners[j]).norm();
+            let slope = slope(0, 1).max(slope(1, 2)).max(slope(2, 0));
+            let most = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+            found.push(Steep { corners, normal, most, slope });
+        },
+    );
     found
 }
 

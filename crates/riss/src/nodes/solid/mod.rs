@@ -15,6 +15,7 @@ mod loads;
 mod sites;
 pub mod spacing;
 mod spread_load;
+mod supports;
 #[cfg(test)]
 mod tests;
 mod walls;
@@ -31,6 +32,7 @@ use serde::{Deserialize, Serialize};
 use sites::Sites;
 pub use spacing::{Region, SolidSpacing, SpacingPlan};
 pub use spread_load::spread_load;
+pub use supports::support_regions;
 pub use walls::{thinnest_wall, wall_regions};
 
 /// Least distance of two nodes over the mean of their spacings.

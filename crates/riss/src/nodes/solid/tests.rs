@@ -289,3 +289,44 @@ fn absurd_spacings_are_refused_at_once() {
         assert!(error.to_string().contains("at most 3000000"), "{error}");
     }
 }
+
+/// A cylinder with a blind hole, by its profile turned around the z axis.
+fn cup() -> crate::geometry::surface::TriangleMesh {
+    let profile = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.5, 2.0), (0.5, 1.0), (0.0, 1.0)];
+    let n = 40;
+    let mut mesh = crate::geometry::surface::TriangleMesh::default();
+    for (k, w) in profile.windows(2).enumerate() {
+        let part = mesh.add_part(&format!("{k}"), crate::geometry::surface::Shape::Triangles);
+        let at = |(r, z): (f64, f64), i: usize| {
+            let (sin, cos) = (2.0 * PI * (i % n) as f64 / n as f64).sin_cos();
+            v(r * cos, r * sin, z)
+        };
+        for i in 0..n {
+            let [a, b, c, d] = [at(w[0], i), at(w[0], i + 1), at(w[1], i + 1), at(w[1], i)];
+            if a != b {
+                mesh.push([a, b, c], part);
+            }
+            if c != d {
+                mesh.push([a, c, d], part);
+            }
+        }
+    }
+    mesh
+}
+
+#[test]
+fn on_the_edge_at_the_ground_of_a_hole_each_surface_looks_at_its_own_side() {
+    let body = Body::new(cup(), &[], 0.1, 0.1);
+    let cloud = &body.solid.cloud;
+    let on_edge = |p: &Vector3| (p.z - 1.0).abs() < 1e-9 && p.xy().norm() > 0.49 && p.xy().norm() < 0.51;
+    let nodes: Vec<usize> = (0..cloud.len()).filter(|i| on_edge(&cloud.positions[*i])).collect();
+    assert!(nodes.len() > 25);
+    for i in nodes {
+        let Place::Surface(facets) = &cloud.places[i] else { panic!("it is on the boundary") };
+        let [one, other] = &facets[..] else { panic!("two surfaces meet there, not {}", facets.len()) };
+        for (a, b) in [(one, other), (other, one)] {
+            let inward = b.sight - cloud.positions[i];
+            assert!(inward.dot(&a.normal) > 0.3 * inward.norm() && inward.dot(&b.normal) < 0.0);
+        }
+    }
+}

@@ -27,12 +27,16 @@ fn walls(body: &Surface, largest: f64) -> Vec<Wall> {
     let longest = (PIECE * body.bounds().size().norm()).max(PIECE_SPACINGS * largest);
     let mut found = vec![];
     for t in 0..body.triangles().len() as u32 {
-        body.for_each_piece(t, longest, |corners| {
-            let middle = corners.iter().sum::<Vector3>() / 3.0;
-            if let Some(thickness) = body.wall(t, middle, THROUGH * largest) {
-                found.push(Wall { corners, thickness });
-            }
-        });
+        body.for_each_piece(
+            t,
+            |_| longest,
+            |corners| {
+                let middle = corners.iter().sum::<Vector3>() / 3.0;
+                if let Some(thickness) = body.wall(t, middle, THROUGH * largest) {
+                    found.push(Wall { corners, thickness });
+                }
+            },
+        );
     }
     found
 }
