@@ -1,6 +1,7 @@
 //! Area of crack face that belongs to each pair of nodes, and how much of it is cohesive.
 
 use super::work::EDGE;
+use crate::geometry::point_tree::PointTree;
 use crate::geometry::triangle::area_vector;
 use crate::math::Vector3;
 use crate::model::{CohesiveCrack, SolidModel};
@@ -39,19 +40,16 @@ pub(super) fn face_areas(
     for t in 0..surface.triangles().len() as u32 {
         surface.for_each_piece(t, |p| EDGE * spacing.at(p), |piece| pieces.push(piece));
     }
-    let nearest = |p: Vector3| {
-        let apart = |k: &usize| (positions[*k] - p).norm_squared();
-        (0..positions.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)))
-    };
+    let pairs = PointTree::new(positions);
     let of_piece = |corners: &[Vector3; 3]| {
         let area = 0.5 * area_vector(*corners).norm() / (PARTS * PARTS) as f64;
         let mut found = vec![];
         for [a, b] in centers() {
             let p = corners[0] + (corners[1] - corners[0]) * a + (corners[2] - corners[0]) * b;
             if model.body.contains(p)
-                && let Some(pair) = nearest(p)
+                && let Some(pair) = pairs.nearest(p)
             {
-                found.push((pair, area, cohesive.is_some_and(|c| !c.is_notch(p))));
+                found.push((pair as usize, area, cohesive.is_some_and(|c| !c.is_notch(p))));
             }
         }
         found
