@@ -210,3 +210,53 @@ fn a_strip_grows_straight_in_bending() {
     let [peak, expected] = [&record, &whole].map(|r| r.curve[r.peak].load);
     assert!((peak / expected - 1.0).abs() < 0.05, "{peak} {expected}");
 }
+
+/// Half of the end of a bar is moved, the other half pulled by the stress that goes with it: the stress is uniform, and the
+/// force on the half that is moved is that stress over its area, though the support ends amid the surface.
+#[test]
+fn the_force_on_a_support_that_ends_amid_a_surface_is_that_of_a_uniform_stress() {
+    let (young, length, displacement) = (30000.0, 40.0, 1e-3);
+    // Corners of the lower end, then around the two halves of the upper one.
+    let corners = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]];
+    let upper = [[0, 0, 40], [5, 0, 40], [10, 0, 40], [10, 10, 40], [5, 10, 40], [0, 10, 40]];
+    let faces: [(&str, &[usize]); 7] = [
+        ("bottom", &[0, 3, 2, 1]),
+        ("moved", &[4, 5, 8, 9]),
+        ("pulled", &[5, 6, 7, 8]),
+        ("side", &[0, 1, 6, 5, 4]),
+        ("side", &[1, 2, 7, 6]),
+        ("side", &[2, 3, 9, 8, 7]),
+        ("side", &[3, 0, 4, 9]),
+    ];
+    let names = ["bottom", "moved", "pulled", "side"];
+    let tag = |name: &str| 1 + names.iter().position(|n| *n == name).unwrap();
+    let mut mesh = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n");
+    names.iter().for_each(|n| mesh += &format!("2 {} \"{n}\"\n", tag(n)));
+    mesh += "$EndPhysicalNames\n$Nodes\n10\n";
+    for (k, [x, y, z]) in corners.iter().chain(&upper).enumerate() {
+        mesh += &format!("{} {x} {y} {z}\n", k + 1);
+    }
+    let fan = |c: &[usize]| -> Vec<[usize; 3]> { (1..c.len() - 1).map(|k| [c[0], c[k], c[k + 1]]).collect() };
+    let triangles: Vec<_> = faces.iter().flat_map(|(n, c)| fan(c).into_iter().map(|t| (tag(n), t))).collect();
+    mesh += &format!("$EndNodes\n$Elements\n{}\n", triangles.len());
+    for (k, (tag, [a, b, c])) in triangles.iter().enumerate() {
+        mesh += &format!("{} 2 2 {tag} {tag} {} {} {}\n", k + 1, a + 1, b + 1, c + 1);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bar.msh");
+    std::fs::write(&file, mesh + "$EndElements\n").unwrap();
+    let (record, _) = load(&format!(
+        "method = 'collocation'\nfiles = 'anywhere'\nrigid_motion = 'mean-is-zero'\nmaterial = {{ young = {young}, poisson = 0.2, \
+         cohesive = {{ strength = 3, fracture_energy = 0.1 }} }}\ngeometry.gmsh = {{ file = '{}' }}\nnodes.spacing = 3\n\
+         support = [{{ on = 'bottom', z = 0 }}, {{ on = 'moved', z = {displacement} }}]\n\
+         load = [{{ on = 'pulled', traction = [0, 0, {}] }}]\n\
+         crack = [{{ cohesive = true, polygon = [[0, 0, 18], [10, 0, 18], [10, 10, 18], [0, 10, 18]] }}]\n\
+         loading.steps = 1",
+        file.display(),
+        young * displacement / length,
+    ));
+    let point = record.curve[1];
+    let stiffness = point.load / point.displacement;
+    // What is left, 1e-5, is the integration of the virtual field over the boundary.
+    assert!((stiffness / (young * 50.0 / length) - 1.0).abs() < 1e-4, "{stiffness}");
+}

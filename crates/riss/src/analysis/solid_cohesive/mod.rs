@@ -1,9 +1,8 @@
 //! Cohesive cracks on given surfaces: tied until they reach their strength, then opening along the path of equilibrium.
 //!
 //! The body is linear, so that it is condensed onto the openings of its pairs of nodes: [`condensed`], with [`energy`] between their
-//! displacement fields, what loads do in [`work`] and supports in
-//! [`reactions`], and areas of faces in [`areas`] and [`free_faces`]; what then happens along
-//! the path of equilibrium is that of [`super::cohesive`]. Surfaces that grow do so by [`growing`].
+//! displacement fields, what loads do in [`work`] and supports in [`reactions`], and areas of faces in [`areas`] and
+//! [`free_faces`]; what then happens along the path of equilibrium is that of [`super::cohesive`]. Surfaces that grow do so by [`growing`].
 
 mod areas;
 mod condensed;
