@@ -4,6 +4,7 @@ use super::contact::{ContactSearch, solve_in_contact};
 use super::energy::{reactions, strain_energy};
 use super::error_bars::widen_error_bars;
 use super::fields::sample_fields;
+use super::growth_record::TipStatus;
 use super::guard_rails::Rails;
 use super::record::*;
 use super::refinement::refine;

@@ -26,7 +26,8 @@ pub(super) fn add(field: &mut SpacingField, model: &Model) {
     let contacts: Vec<Vector2> = model.cracks.iter().flat_map(contacts).chain(shared).collect();
     for (index, crack) in model.cracks.iter().enumerate() {
         let mut wanted = vec![];
-        walk(crack, |p| {
+        let least = LEAST_STEP * crack.length();
+        walk(crack, least, |p| {
             let mut distance = model.domain.distance_to_boundary(p);
             // The way to the next point is as long as the ligament, so none is passed over.
             tree.visit(&Aabb::around(p, Vector2::repeat(distance)), |i| {
@@ -36,7 +37,8 @@ pub(super) fn add(field: &mut SpacingField, model: &Model) {
                 }
             });
             let from_contact = contacts.iter().map(|c| (c - p).norm()).fold(f64::INFINITY, f64::min);
-            if distance < BESIDE * from_contact {
+            // A step from a contact or less, the angle may be rounding.
+            if from_contact > least && distance < BESIDE * from_contact {
                 wanted.push((p, FRACTION * distance));
             }
             distance
@@ -54,9 +56,8 @@ fn contacts(crack: &CrackPath) -> impl Iterator<Item = Vector2> + '_ {
     [End::Start, End::End].into_iter().filter(is_contact).map(|e| crack.end_position(e))
 }
 
-/// Visits points along a path; `visit` returns how far the next one may be.
-fn walk(crack: &CrackPath, mut visit: impl FnMut(Vector2) -> f64) {
-    let least = LEAST_STEP * crack.length();
+/// Visits points along a path; `visit` returns how far the next one may be, but it is `least` away.
+fn walk(crack: &CrackPath, least: f64, mut visit: impl FnMut(Vector2) -> f64) {
     let mut before = 0.0;
     let mut next = 0.0;
     for (a, b) in crack.segments() {
@@ -65,5 +66,45 @@ fn walk(crack: &CrackPath, mut visit: impl FnMut(Vector2) -> f64) {
             next += visit(a + (b - a) * ((next - before) / along)).max(least);
         }
         before += along;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::curve::Curve;
+    use crate::model::Domain;
+    use crate::nodes::settings::Graded;
+
+    /// Two cracks of a random plate: the way along the second comes to the meeting but for the last bits.
+    #[test]
+    fn a_crack_that_ends_on_another_asks_for_no_vanishing_spacing() {
+        let point = |p: &[f64; 2]| Vector2::new(p[0], p[1]);
+        let corners = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]].map(|p| point(&p));
+        let outline = (0..4).map(|k| Curve::Line { start: corners[k], end: corners[(k + 1) % 4] }).collect();
+        let mut model = Model::plain(Domain::new(outline, vec![]));
+        let meeting = [0.23401534753073747, 3.0222651029728245];
+        let ending = [
+            [0.9441155681814026, 3.277611040861346],
+            [0.6620430677570649, 3.175458681591665],
+            [0.3702146555627349, 3.1059160483647283],
+            meeting,
+        ];
+        let through = [
+            [0.0, 3.2464389600250048],
+            meeting,
+            [0.5297098167206706, 2.739006033143664],
+            [1.0182801199944411, 2.71788682207563],
+            [1.3181424051950341, 2.7087978224454043],
+            [1.4417206574162111, 2.7826114415805305],
+        ];
+        let crack = |vertices: &[[f64; 2]], ends| {
+            let vertices = vertices.iter().map(point).collect();
+            CrackPath { name: "crack".into(), vertices, ends }
+        };
+        model.cracks =
+            vec![crack(&ending, [EndKind::Tip, EndKind::Junction]), crack(&through, [EndKind::Mouth, EndKind::Tip])];
+        let field = SpacingField::of_model(&model, &Graded { spacing: None, tip_spacing: Some(0.05), growth: None });
+        assert!(field.at(point(&meeting)) > 0.01, "{}", field.at(point(&meeting)));
     }
 }

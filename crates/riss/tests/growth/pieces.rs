@@ -1,7 +1,8 @@
 //! Cracks that close around a piece of the body, and cracks that meet.
 
-use crate::bodies::{body, crack, polygon, rectangle, run};
-use riss::analysis::{Settings, StaticResult};
+use crate::bodies::{BOTH, body, crack, hold, polygon, rectangle, run};
+use crate::steps::grow;
+use riss::analysis::{GrowthEndKind, GrowthSettings, Settings, StaticResult, TipStatus};
 use riss::crack::EndKind::{Junction, Mouth, Tip};
 use riss::geometry::curve::Curve;
 use riss::material::PlaneState;
@@ -54,4 +55,23 @@ fn cracks_that_meet_at_their_ends_are_like_one() {
     // The domains of the second are smaller: they end where its path does.
     assert!((two[0] / one[0] - 1.0).abs() < 2e-3, "{one:?} {two:?}");
     assert!((two[1] - one[1]).abs() < 2e-3 * one[0], "{one:?} {two:?}");
+}
+
+/// Between clamps both halves are held once a crack has gone through, and what is left of factors is rounding.
+#[test]
+fn cracks_in_pieces_that_carry_nothing_do_not_grow() {
+    let mut model = body(rectangle((0.0, 0.0), (4.0, 6.0)), PlaneState::Strain);
+    BOTH.into_iter().for_each(|d| hold(&mut model, 0, d, 0.0));
+    hold(&mut model, 2, BOTH[0], 0.0);
+    hold(&mut model, 2, BOTH[1], 0.01);
+    model.cracks.push(crack(&[(0.0, 3.0), (3.8, 3.0)], [Mouth, Tip]));
+    model.cracks.push(crack(&[(0.0, 4.5), (0.8, 4.6)], [Mouth, Tip]));
+    model.cracks[1].name = "beside".into();
+    let growth = GrowthSettings { increment: Some(0.3), ..GrowthSettings::default() };
+    let (steps, end) = grow(&model, &Settings::default(), &growth);
+    assert_eq!((steps.records.len(), end.kind), (2, GrowthEndKind::NoTipGrows), "{end:?}");
+    assert_eq!(steps.records[0].cracks[0].tips[0].status, TipStatus::ReachedBoundary);
+    let left = steps.tip(1, 1);
+    assert!(matches!(left.status, TipStatus::Unloaded | TipStatus::Closed), "{left:?}");
+    assert_eq!(left.increment, Some(0.0));
 }

@@ -3,7 +3,8 @@
 use super::condensed::Condensed;
 use super::path::{CohesiveState, Path};
 use super::settings::LoadingSettings;
-use crate::analysis::record::{GrowthEnd, GrowthEndKind, Observer};
+use crate::analysis::growth_record::{GrowthEnd, GrowthEndKind};
+use crate::analysis::record::Observer;
 use crate::material::CohesiveLaw;
 use serde::{Deserialize, Serialize};
 

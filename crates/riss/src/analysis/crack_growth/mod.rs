@@ -11,6 +11,7 @@ pub mod settings;
 pub mod state;
 mod walls;
 
+use super::growth_record::{GrowthEnd, GrowthEndKind, TipStatus};
 use super::guard_rails::Rails;
 use super::linear_static::solve_step;
 use super::record::*;
@@ -135,6 +136,7 @@ fn next_state(model: &Model, plan: &StepPlan, grown: &Grown, state: &GrowthState
         cycles_range: state.cycles_range,
         leader: leader(plan, model),
         load_factor: Some(load_factor),
+        hardest: state.hardest,
         automatic_increment: state.automatic_increment,
         scale: state.scale,
         tips: grown.memory.clone(),

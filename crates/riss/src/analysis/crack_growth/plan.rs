@@ -12,6 +12,9 @@ use crate::model::Model;
 const CLOSURE: f64 = 0.01;
 /// Tips driven less than this part of the hardest driven one are in its shadow: their factors are noise.
 const SHADOW: f64 = 0.01;
+/// Tips driven less than this part of the hardest driven one of all steps are in pieces that carry nothing any more: what is
+/// left of their factors is rounding.
+const ROUNDING: f64 = 1e-7;
 /// Growth shorter than this part of the step's increment is saved up.
 const LEAST_SHARE: f64 = 0.05;
 /// An increment that converges is never halved below this share.
@@ -64,6 +67,7 @@ pub(super) fn plan_step(
         record.tips.iter_mut().for_each(|tip| judge(model, growth, tip, held));
         debug_assert_eq!(model.cracks[crack].name, record.name);
     }
+    set_unloaded_aside(step, state);
     control(growth.control, step, state);
     let length = increment * state.scale;
     let plan = match &growth.law {
@@ -102,6 +106,19 @@ fn judge(model: &Model, growth: &GrowthSettings, tip: &mut TipRecord, held: bool
         tip.reason = Some(format!("K_I = {k1:.4e} presses the faces together"));
     } else {
         tip.status = TipStatus::Waiting;
+    }
+}
+
+/// Tips in pieces that have come off and carry nothing do not grow, whatever their factors are.
+fn set_unloaded_aside(step: &mut StepRecord, state: &mut GrowthState) {
+    state.hardest = hardest(step).map_or(state.hardest, |(_, k)| k.max(state.hardest));
+    let tips = step.cracks.iter_mut().flat_map(|c| &mut c.tips);
+    for tip in tips.filter(|t| t.status == TipStatus::Waiting) {
+        let k = tip.k_equivalent.unwrap_or(0.0);
+        if k < ROUNDING * state.hardest {
+            tip.status = TipStatus::Unloaded;
+            tip.reason = Some(format!("K_equivalent = {k:.2e} is rounding beside {:.3e} of before", state.hardest));
+        }
     }
 }
 

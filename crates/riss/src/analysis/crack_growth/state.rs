@@ -25,6 +25,9 @@ pub struct GrowthState {
     pub leader: Option<Leader>,
     /// Factor on the loads in the step before.
     pub load_factor: Option<f64>,
+    /// The largest equivalent factor of any open tip so far, before loads are scaled [stress·√length].
+    #[serde(default)]
+    pub hardest: f64,
     /// Increment that follows from the cracks at the beginning, for a case that gives none [length].
     pub automatic_increment: f64,
     /// Share of the increment that the increment control has left.

@@ -10,8 +10,9 @@ use super::cohesive::{
     Bond, CohesiveState, Condensed, Followed, LoadPoint, LoadingSettings, follow, peak_of, pictures,
 };
 use super::crack_growth::{GrowthSettings, GrowthState, crack_growth};
+use super::growth_record::{GrowthEnd, GrowthEndKind};
 use super::linear_static::{Solved, discretize, result_of};
-use super::record::{CrackRecord, GrowthEnd, GrowthEndKind, Observer, Stage, StaticResult, TipRecord};
+use super::record::{CrackRecord, Observer, Stage, StaticResult, TipRecord};
 use super::settings::Settings;
 use super::warnings::Warning;
 use crate::crack::CrackPath;

@@ -5,7 +5,7 @@
 //! stress as far as that stress is near the strength, and the longer surface is loaded from rest again. The last surface
 //! thus has one path, without values carried over from other nodes.
 
-use super::super::record::{GrowthEnd, GrowthEndKind};
+use super::super::growth_record::{GrowthEnd, GrowthEndKind};
 use super::super::solid_growth::drive::{Drive, by_strength, place_on};
 use super::super::solid_growth::{SolidGrowthSettings, SolidGrowthState};
 use super::super::solid_static::{SolidSettings, Solved};

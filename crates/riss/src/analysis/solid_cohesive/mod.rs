@@ -15,7 +15,8 @@ mod work;
 use super::cohesive::{
     Bond, CohesiveState, Condensed, Followed, LoadMeasure, LoadPoint, LoadingSettings, follow, peak_of, pictures,
 };
-use super::record::{GrowthEnd, GrowthEndKind, Observer, Stage};
+use super::growth_record::{GrowthEnd, GrowthEndKind};
+use super::record::{Observer, Stage};
 use super::solid_growth::SolidGrowthSettings;
 use super::solid_record::SolidResult;
 use super::solid_static::{Placed, SolidSettings, Solved};

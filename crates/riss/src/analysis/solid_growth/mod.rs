@@ -5,7 +5,8 @@
 pub(super) mod drive;
 pub mod settings;
 
-use super::record::{GrowthEnd, GrowthEndKind, Observer};
+use super::growth_record::{GrowthEnd, GrowthEndKind};
+use super::record::Observer;
 use super::solid_record::SolidResult;
 use super::solid_static::{SolidSettings, Solved};
 use crate::crack::{CrackDefect, CrackSurface, EdgeLimits, FrontStep, GrowingCrack};
