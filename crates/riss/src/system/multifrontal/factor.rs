@@ -15,6 +15,9 @@ use std::sync::{Arc, Mutex, MutexGuard};
 /// Branches with fewer operations are one task.
 const TASK: f64 = 4e6;
 
+/// Branches with fewer values are one task of a solution.
+const SOLVE_TASK: usize = 100_000;
+
 /// A number that a factor may consist of.
 pub trait Scalar: RealField + ComplexField + Copy + AddAssign + SubAssign + Send + Sync {}
 
@@ -48,42 +51,83 @@ impl<T: Scalar> Cholesky<T> {
         Ok(Self { tree, values })
     }
 
-    /// Fronts with their panels.
-    fn panels(&self) -> impl DoubleEndedIterator<Item = (&Front, MatRef<'_, T>)> {
-        self.tree.fronts.iter().map(|front| {
-            let (k, m) = front.size();
-            (front, MatRef::from_column_major_slice(&self.values[front.values.clone()], k + m, k))
-        })
-    }
-
-    /// Solves for one load in its place.
+    /// Solves for one load in its place; the same bits for any number of threads.
     pub fn solve_in_place(&self, x: &mut [T]) {
+        let Some(last) = self.tree.fronts.len().checked_sub(1) else { return };
         let places = || self.tree.order.iter().flat_map(|&i| [2 * i as usize, 2 * i as usize + 1]);
         let mut y: Vec<T> = places().map(|dof| x[dof]).collect();
-        let mut outside: Vec<T> = vec![];
-        let one = T::one_impl();
-        for (front, panel) in self.panels() {
-            let (k, m) = front.size();
-            let own = &mut y[2 * front.own.start..2 * front.own.end];
-            solve_lower_triangular_in_place(panel.subrows(0, k), as_column_mut(own), Par::Seq);
-            outside.clear();
-            outside.resize(m, T::zero_impl());
-            let below = panel.subrows(k, m);
-            matmul(as_column_mut(&mut outside), Accum::Replace, below, as_column(own), one, Par::Seq);
-            for (p, v) in front.border_dofs().zip(&outside) {
-                y[p] -= *v;
+        self.forward(last, &mut y);
+        self.backward(last, &mut y, &[]);
+        places().zip(y).for_each(|(dof, v)| x[dof] = v);
+    }
+
+    /// The panel of a front.
+    fn panel(&self, front: &Front) -> MatRef<'_, T> {
+        let (k, m) = front.size();
+        MatRef::from_column_major_slice(&self.values[front.values.clone()], k + m, k)
+    }
+
+    /// The children of a front, each with its part of the dofs `y` of their branches.
+    fn children<'a>(&self, front: &Front, mut y: &'a mut [T]) -> Vec<(usize, &'a mut [T])> {
+        let mut children = vec![];
+        for &child in &front.children {
+            let (head, tail) = y.split_at_mut(2 * self.tree.places_of_branch(child));
+            children.push((child, head));
+            y = tail;
+        }
+        children
+    }
+
+    /// Eliminates forward in a branch with dofs `y`; returns what is to be subtracted on the border of its last front.
+    fn forward(&self, f: usize, y: &mut [T]) -> Vec<T> {
+        let front = &self.tree.fronts[f];
+        let (k, m) = front.size();
+        let (rest, own) = y.split_at_mut(y.len() - k);
+        let children = self.children(front, rest);
+        let left: Vec<Vec<T>> = match self.tree.values_of_branch(f).len() > SOLVE_TASK {
+            true => children.into_par_iter().map(|(c, y)| self.forward(c, y)).collect(),
+            false => children.into_iter().map(|(c, y)| self.forward(c, y)).collect(),
+        };
+        let mut outside = vec![T::zero_impl(); m];
+        for (&child, left) in front.children.iter().zip(&left) {
+            for (place, v) in front.places_of(&self.tree.fronts[child]).zip(left.chunks_exact(2)) {
+                for (c, v) in v.iter().enumerate() {
+                    match (2 * place + c).checked_sub(k) {
+                        None => own[2 * place + c] -= *v,
+                        Some(p) => outside[p] += *v,
+                    }
+                }
             }
         }
-        for (front, panel) in self.panels().rev() {
-            let (k, m) = front.size();
-            outside.clear();
-            outside.extend(front.border_dofs().map(|p| y[p]));
-            let own = &mut y[2 * front.own.start..2 * front.own.end];
-            let below = panel.subrows(k, m).transpose();
-            matmul(as_column_mut(own), Accum::Add, below, as_column(&outside), -one, Par::Seq);
-            solve_upper_triangular_in_place(panel.subrows(0, k).transpose(), as_column_mut(own), Par::Seq);
+        let panel = self.panel(front);
+        solve_lower_triangular_in_place(panel.subrows(0, k), as_column_mut(own), Par::Seq);
+        let below = panel.subrows(k, m);
+        matmul(as_column_mut(&mut outside), Accum::Add, below, as_column(own), T::one_impl(), Par::Seq);
+        outside
+    }
+
+    /// Substitutes back in a branch with dofs `y`.
+    ///
+    /// - `border`: the solution on the border of its last front
+    fn backward(&self, f: usize, y: &mut [T], border: &[T]) {
+        let front = &self.tree.fronts[f];
+        let (k, m) = front.size();
+        let (rest, own) = y.split_at_mut(y.len() - k);
+        let panel = self.panel(front);
+        let below = panel.subrows(k, m).transpose();
+        matmul(as_column_mut(own), Accum::Add, below, as_column(border), -T::one_impl(), Par::Seq);
+        solve_upper_triangular_in_place(panel.subrows(0, k).transpose(), as_column_mut(own), Par::Seq);
+        let of_child = |(child, y): (usize, &mut [T])| {
+            let at = |dof: usize| dof.checked_sub(k).map_or_else(|| own[dof], |p| border[p]);
+            let places = front.places_of(&self.tree.fronts[child]);
+            let its_border: Vec<T> = places.flat_map(|p| [at(2 * p), at(2 * p + 1)]).collect();
+            self.backward(child, y, &its_border);
+        };
+        let children = self.children(front, rest);
+        match self.tree.values_of_branch(f).len() > SOLVE_TASK {
+            true => children.into_par_iter().for_each(of_child),
+            false => children.into_iter().for_each(of_child),
         }
-        places().zip(y).for_each(|(dof, v)| x[dof] = v);
     }
 }
 
@@ -271,6 +315,14 @@ mod tests {
         };
         assert!(EliminationTree::new(&positions, &matrix).work().last() > Some(&(4.0 * TASK)));
         assert_eq!(values(1), values(3));
+        let solution = |n: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+            let mut x: Vec<f64> = (0..2 * matrix.n_nodes()).map(|i| (i % 7) as f64).collect();
+            pool.install(|| factor(&positions, &matrix).unwrap().solve_in_place(&mut x));
+            x
+        };
+        assert!(values(1).len() > 2 * SOLVE_TASK);
+        assert_eq!(solution(1), solution(3));
     }
 
     #[test]

@@ -37,15 +37,9 @@ impl<'a, T: Scalar> Child<'a, T> {
     /// - `left`: lower triangle, column by column
     pub(super) fn new(parent: &Front, child: &Front, left: &'a [T]) -> Self {
         let mut runs = [vec![], vec![]];
-        let mut on_border = 0;
-        for (first, &p) in child.border.iter().enumerate() {
-            let is_outside = p as usize >= parent.own.end;
-            let place = if is_outside {
-                on_border += parent.border[on_border..].iter().take_while(|q| **q < p).count();
-                on_border
-            } else {
-                p as usize - parent.own.start
-            };
+        for (first, place) in parent.places_of(child).enumerate() {
+            let is_outside = place >= parent.own.len();
+            let place = if is_outside { place - parent.own.len() } else { place };
             let runs: &mut Vec<Run> = &mut runs[usize::from(is_outside)];
             match runs.last_mut() {
                 Some(run) if run.place + run.n == place => run.n += 1,

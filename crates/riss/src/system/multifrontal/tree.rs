@@ -47,9 +47,16 @@ impl Front {
         (2 * self.own.len(), 2 * self.border.len())
     }
 
-    /// Places of dofs on the border.
-    pub fn border_dofs(&self) -> impl Iterator<Item = usize> + '_ {
-        self.border.iter().flat_map(|p| [2 * *p as usize, 2 * *p as usize + 1])
+    /// Where nodes on the border of a child are in this front: its own nodes, then its border.
+    pub fn places_of<'a>(&'a self, child: &'a Front) -> impl Iterator<Item = usize> + 'a {
+        let mut on_border = 0;
+        child.border.iter().map(move |&p| match (p as usize).checked_sub(self.own.end) {
+            None => p as usize - self.own.start,
+            Some(_) => {
+                on_border += self.border[on_border..].iter().take_while(|q| **q < p).count();
+                self.own.len() + on_border
+            }
+        })
     }
 }
 
@@ -93,6 +100,12 @@ impl EliminationTree {
     pub fn values_of_branch(&self, front: usize) -> Range<usize> {
         let front = &self.fronts[front];
         self.fronts[front.branch.start].values.start..front.values.end
+    }
+
+    /// Number of places in a branch.
+    pub fn places_of_branch(&self, front: usize) -> usize {
+        let front = &self.fronts[front];
+        front.own.end - self.fronts[front.branch.start].own.start
     }
 
     fn find_entries(&mut self, graph: &Graph, places: &[u32]) {
