@@ -99,7 +99,9 @@ def test_what_cannot_be_solved_is_an_analysis_error():
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of Unix")
 def test_ctrl_c_ends_the_run_after_the_step_at_hand(tmp_path):
     program = f"""
-import sys
+import signal, sys
+# Who is started in the background ignores the signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.insert(0, {os.path.dirname(__file__)!r})
 from test_case import strip
 print("begin", flush=True)

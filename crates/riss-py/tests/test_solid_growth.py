@@ -166,7 +166,9 @@ def test_pictures_and_other_programs(run, broken, tmp_path):
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of Unix")
 def test_ctrl_c_ends_growth_after_the_step_at_hand(tmp_path):
     program = f"""
-import sys
+import signal, sys
+# Who is started in the background ignores the signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.insert(0, {os.path.dirname(__file__)!r})
 from test_solid_growth import bar
 print("begin", flush=True)
